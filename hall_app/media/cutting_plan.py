@@ -28,6 +28,7 @@ THIN = 1e-3  # [m] of cloth beyond the shoulder that makes it a fold
 LONG = 2.5  # times as long as wide: such a panel lies along the sheet
 SHAPE = 1.35  # width of the sheet over its height, about
 LETTERS = 46  # a line of words is the sheet's longer side over this
+SIDES = {"left": "左", "right": "右"}  # of the wearer, where a panel is cut for one alone
 GAP = 5.0  # lines between panels: seams' letters, measures and names stand there
 COLUMNS = 12  # entries of the legend from which it stands in two
 KINDS = {"joined": ("平缝", "joined flat"), "sewn": ("缝合", "sewn"), "middle": ("中缝", "middle")}
@@ -180,9 +181,13 @@ class _Laid:
         ring = self.outline + self.shift
         low, high = ring.min(0), ring.max(0)
         middle, size = (low + high) / 2, high - low
-        name = self.panel.name
-        double = (f"{name}，双层 double", f"{name}, double") if self.panel.doubled else (name, None)
-        yield Words(middle[0], high[1] + 2.1 * line, double[0], line, double[1])
+        told = [(self.panel.name, self.panel.name)]
+        if self.panel.doubled:
+            told.append(("双层 double", "double"))
+        if self.panel.side:
+            told.append((f"只裁{SIDES[self.panel.side]}身 {self.panel.side} only", f"{self.panel.side} only"))
+        zh, en = "，".join(words[0] for words in told), ", ".join(words[1] for words in told)
+        yield Words(middle[0], high[1] + 2.1 * line, zh, line, en if len(told) > 1 else None)
         across, down = (f"{value:.0f}" for value in size)
         yield Words(middle[0], low[1] - 1.7 * line, across, 0.9 * line, colour=ACCENT)
         yield Words(low[0] - 1.7 * line, middle[1], down, 0.9 * line, colour=ACCENT, upright=True)

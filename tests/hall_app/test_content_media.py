@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -178,6 +179,15 @@ def test_a_pattern_sheet_is_at_true_size_and_says_what_a_cutter_asks():
     assert kinds.count("fold") == 2, "the shoulder of both panels, none of a scarf"
     assert kinds.count("tie") == 2
     assert kinds.count("grain") == 9, "three strokes an arrow"
+
+
+def test_a_sheet_says_which_panel_is_cut_for_one_side_alone():
+    coat = half()
+    body, *others = coat.panels
+    plan = cutting_plan([replace(coat, panels=(replace(body, side="left"), *others))], ("衣", "Coat"))
+    told = {word.text: word.latin for word in plan.words}
+    assert told["body，只裁左身 left only"] == "body, left only"
+    assert "sleeve" in told
 
 
 def test_panels_of_a_sheet_lie_apart():

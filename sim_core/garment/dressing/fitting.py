@@ -76,7 +76,7 @@ def first_positions(key: str, layer: Layer, cloth: Cloth, ground: Ground) -> np.
         own = place.start(layer.pattern, layer.cut, ground, rng)
     except SimCoreError as error:
         raise SimCoreError(f"{key}.place: {error}") from error
-    return np.concatenate([own, own * [-1.0, 1.0, 1.0]])
+    return np.concatenate([own, own * [-1.0, 1.0, 1.0]])[layer.pattern.kept(layer.cut)]
 
 
 def _checked_way(

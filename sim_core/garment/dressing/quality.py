@@ -50,7 +50,7 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
     if layer.pattern.seams:
         errors["seam_gap_m"] = seam_gap(garment, layer.cloth)
         errors["seam_ease"] = max((fit.ease for fit in layer.cut.fits), default=0.0)
-    if layer.pattern.mirror:
+    if layer.pattern.mirror and layer.pattern.alike:
         worn = garment.worn()
         half = len(worn) // 2
         away = np.linalg.norm(worn[half:] - worn[:half] * [-1.0, 1.0, 1.0], axis=1)
@@ -82,8 +82,9 @@ def seam_gap(garment: Garment, cloth: Cloth) -> float:
     worn, gaps = garment.worn(), [0.0]
     for seam in pattern.seams:
         panels = pattern.panel(seam.a.panel), pattern.panel((seam.b or seam.a).panel)
-        first = [cloth.along(seam.a, panels[0], side) for side in sides]
-        second = first[::-1] if seam.b is None else [cloth.along(seam.b, panels[1], side) for side in sides]
+        own = [side for side in sides if all(panel.is_of(side.strip() or panel.side) for panel in panels)]
+        first = [cloth.along(seam.a, panels[0], side) for side in own]
+        second = first[::-1] if seam.b is None else [cloth.along(seam.b, panels[1], side) for side in own]
         gaps += [
             float(np.linalg.norm(worn[a] - worn[b], axis=1).max()) for a, b in zip(first, second, strict=True)
         ]

@@ -42,11 +42,11 @@ def thinned(garment: Garment, counts: Sequence[int], moments: Sequence[np.ndarra
     """The garment with about each of `counts` triangles, the largest first.
 
     Triangles go where the drape is flat (see `thinning`), and stays so in `moments`, where its vertices (V, 3) [m] are
-    at other times; what stays keeps place and texture coordinates. Of a mirrored garment one half is thinned and
-    mirrored, as it moves on either side. The last one may come again when nothing more can go.
+    at other times; what stays keeps place and texture coordinates. Of a garment whose halves are cut alike one
+    is thinned and mirrored, as it moves on either side. The last one may come again when nothing more can go.
     """
     pattern = Pattern.from_dict(garment.cut) if garment.cut else None
-    twice = 2 if pattern is not None and pattern.mirror else 1
+    twice = 2 if pattern is not None and pattern.mirror and pattern.alike else 1
     vertices, faces = len(garment.pattern) // twice, len(garment.pattern_faces) // twice
     own, weld = np.unique(garment.weld[:vertices], return_inverse=True)
     moved = [places[own] for places in moments]

@@ -101,6 +101,27 @@ class Cloth:
             np.concatenate([self.creases, self.creases + count]).astype(np.int32),
         )
 
+    def only(self, kept: np.ndarray) -> Cloth:
+        """Without the vertices that kept (P,) leaves out, which must be those of whole panels; a panel keeps its number
+        and name where it has lost all it had."""
+        new = np.cumsum(kept) - 1
+        joined = np.unique(self.joined[kept], return_inverse=True)
+        whole = np.isin(self.pairs, joined[0]).all(1)
+        faces = kept[self.faces[:, 0]]
+        return replace(
+            self,
+            vertices=self.vertices[kept],
+            faces=new[self.faces[faces]].astype(np.int32),
+            panel=self.panel[faces],
+            panel_of=self.panel_of[kept],
+            joined=joined[1].astype(np.int32),
+            closed=np.unique(self.closed[kept], return_inverse=True)[1].astype(np.int32),
+            pairs=np.searchsorted(joined[0], self.pairs[whole]).astype(np.int32),
+            middle=new[self.middle[kept[self.middle]]].astype(np.int32),
+            paths={key: new[index] for key, index in self.paths.items() if kept[index].all()},
+            creases=new[self.creases[kept[self.creases].all(1)]].astype(np.int32),
+        )
+
     def _legs(self) -> Iterator[tuple[tuple[str, str], np.ndarray]]:
         """Panel and number of every leg, with its vertices."""
         for key, index in self.paths.items():

@@ -25,7 +25,8 @@ class Panel:
     corners: names in order; legs: leg k runs from corner k to the next one, (n, 2) [m] with both ends, y down along
     the warp; doubled: cut twice as high and folded along its length; along: the path of another panel that it is laid
     beside before sewing (None: it lies in the garment's own plane, x outwards from the middle, y = 0 the shoulder
-    fold); dye: sRGB 0..1 (None: the pattern's); pleats: folded into it before it is placed.
+    fold); dye: sRGB 0..1 (None: the pattern's); pleats: folded into it before it is placed; side: "left" or "right" of
+    the wearer where a mirrored pattern has it once, "" where each half has it.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Panel:
     along: Path | None = None
     dye: Colour | None = None
     pleats: tuple[Pleat, ...] = ()
+    side: str = ""
 
     def outline(self) -> np.ndarray:
         """The closed outline (N, 2) [m], first point not repeated."""
@@ -49,7 +51,7 @@ class Panel:
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold."""
         legs = [leg.tolist() for leg in self.legs]
-        told = {
+        told: dict[str, Any] = {
             "name": self.name,
             "corners": list(self.corners),
             "legs": legs,
@@ -57,7 +59,13 @@ class Panel:
             "along": self.along and str(self.along),
             "dye": self.dye and list(self.dye),
         }
-        return {**told, "pleats": [pleat.to_list() for pleat in self.pleats]} if self.pleats else told
+        if self.pleats:
+            told["pleats"] = [pleat.to_list() for pleat in self.pleats]
+        return {**told, "side": self.side} if self.side else told
+
+    def is_of(self, side: str) -> bool:
+        """Whether the half on that side of the wearer, "left" or "right", has it."""
+        return self.side in ("", side)
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Panel:
@@ -70,6 +78,7 @@ class Panel:
             Path.read(data["along"]) if data["along"] else None,
             tuple(data["dye"]) if data["dye"] else None,
             tuple(Pleat(*told) for told in data.get("pleats", ())),
+            data.get("side", ""),
         )
 
 

@@ -129,8 +129,20 @@ class Pattern:
         return cut_cloth(self.panels, self.seams, self.step(edge))
 
     def whole(self, cut: Cloth) -> Cloth:
-        """Its `cloth` with the other half where it is mirrored."""
-        return cut.mirrored() if self.mirror else cut
+        """Its `cloth` with the other half where it is mirrored, panels of one side on that side alone."""
+        if not self.mirror:
+            return cut
+        return cut.mirrored() if self.alike else cut.mirrored().only(self.kept(cut))
+
+    @property
+    def alike(self) -> bool:
+        """Whether no panel is cut for one side alone."""
+        return not any(panel.side for panel in self.panels)
+
+    def kept(self, cut: Cloth) -> np.ndarray:
+        """Which (2P,) vertices of a mirrored pattern's cloth (P) and of its image are cut."""
+        halves = [np.array([panel.is_of(side) for panel in self.panels]) for side in ("left", "right")]
+        return np.concatenate([half[cut.panel_of] for half in halves])
 
     def coloured(self, dye: str | None, dyes: Mapping[str, str]) -> Pattern:
         """The pattern in another colour '#rrggbb', and single panels in theirs; raises SimCoreError for no panel."""

@@ -67,6 +67,9 @@ class PanelTable(Table):
     along: str | None = None
     dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
     pleats: list[PleatsTable] = Field([], max_length=20)
+    side: Literal["", "left", "right"] = Field(
+        "", description="the wearer's, of a mirrored pattern that has it once"
+    )
 
 
 class SeamTable(Table):
@@ -98,6 +101,9 @@ def read_spot(
     if table.side and not mirrored:
         raise CutProblem(f"{key}.side", "only a pattern with mirror = true has sides – leave it out")
     x, y = (_told(f"{key}.at", lambda v=v: measured(v, known)) / 1000 for v in table.at)
+    own = made[table.panel].side
+    if table.side and own and table.side != own:
+        raise CutProblem(f"{key}.side", f"{table.panel!r} is cut for the {own} alone – write {own!r}")
     outline = made[table.panel].outline()
     low, high = outline.min(0), outline.max(0)
     away = max(low[0] - x, x - high[0], low[1] - y, y - high[1])
@@ -107,7 +113,7 @@ def read_spot(
             f"{1000 * x:.0f}, {1000 * y:.0f} mm lies {1000 * away:.0f} mm outside the panel, which spans "
             f"{1000 * low[0]:.0f} to {1000 * high[0]:.0f} and {1000 * low[1]:.0f} to {1000 * high[1]:.0f}",
         )
-    return Spot(table.panel, (x, y), table.side)
+    return Spot(table.panel, (x, y), table.side or own)
 
 
 def read_dye(text: str | None) -> tuple[float, float, float] | None:
@@ -132,6 +138,10 @@ def read_cut(
     for table in panels:
         if table.name in made:
             raise CutProblem(f"panel.{table.name}", "is there twice – give each panel a name of its own")
+        if table.side and not mirrored:
+            raise CutProblem(
+                f"panel.{table.name}.side", "only a pattern with mirror = true has sides – leave it out"
+            )
         made[table.name] = _panel(table, known, made)
     stitched = tuple(_seam(k, table, made, mirrored) for k, table in enumerate(seams))
     _check_once(stitched, made)
@@ -207,6 +217,7 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         else _told(f"{key}.along", lambda: _known(Path.read(table.along or ""), made)),
         read_dye(table.dye),
         _pleats(key, table.pleats, known),
+        table.side,
     )
     try:
         check_extent(panel.outline())
@@ -290,12 +301,21 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
             raise CutProblem(f"{key}.middle", "only a pattern with mirror = true has a middle")
         if table.notches:
             raise CutProblem(f"{key}.notches", "a middle meets its own image everywhere – leave them out")
+        if made[paths[0].panel].side:
+            raise CutProblem(
+                f"{key}.middle",
+                f"{paths[0].panel!r} is cut for one side alone: it has no image to meet – leave it out",
+            )
         off = max(float(np.abs(leg[:, 0]).max()) for leg in paths[0].legs(made[paths[0].panel]))
         if off > 1e-6 and made[paths[0].panel].along is None:
             raise CutProblem(
                 f"{key}.middle", f"{texts[0]!r} leaves x = 0 by {1000 * off:.1f} mm – lay it there"
             )
         return Seam("middle", paths[0])
+    if len({made[path.panel].side for path in paths} - {""}) > 1:
+        raise CutProblem(
+            f"{key}.{kind}", "one panel is cut for the left, the other for the right – they never meet"
+        )
     lengths = [path.length(made[path.panel]) for path in paths]
     if abs(lengths[0] - lengths[1]) > EASE * max(lengths):
         both = " and ".join(f"{1000 * length:.1f}" for length in lengths)

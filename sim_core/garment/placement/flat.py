@@ -20,6 +20,8 @@ ON_BAR = 0.001  # [m] more than it keeps from it that cloth lies off a bar
 ON_FLOOR = 0.002  # [m] more than it keeps from it that cloth lies above the floor
 TRAIL = 0.02  # [m] radius of the bend where it comes to lie there
 RISING = 0.07  # [m] of the shoulder fold over which a front that lies outside is raised to its height
+BEYOND = 0.02  # [m] beyond the sides that a front which goes round them begins to turn
+FINE = 0.002  # [m] between the points of the line it goes along
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,8 @@ class Flat:
     """Flat before and behind the wearer's outstretched arms, or a T-bar through both sleeves.
 
     over: the front, of the wearer, that lies outside where fronts overlap, lift [m] off the other from the shoulder
-    on; front, back [m]: of the sheets before and behind the middle.
+    on; what it has beyond the other side, of panels cut for it alone, goes on round the back, and round again, each
+    turn so far outside the one before. front, back [m]: of the sheets before and behind the middle.
     """
 
     over: str = "left"
@@ -47,7 +50,7 @@ class Flat:
         return laid(pattern, cloth, laying)[0]
 
     def whole(self, pattern: Pattern, cloth: Cloth, ground: Ground) -> np.ndarray:
-        """Positions (2P, 3) [m] of both halves of a mirrored pattern, the outer front raised off the other."""
+        """Positions (W, 3) [m] of the whole of a mirrored pattern, the outer front raised off the other."""
         laying = self._laying(ground)
         own, fall = laid(pattern, cloth, laying)
         both = np.stack([own, own * [-1.0, 1.0, 1.0]])
@@ -55,7 +58,31 @@ class Flat:
         amount = self.lift * share * share * (3 - 2 * share)
         outer = 0 if self.over == "left" else 1
         both[outer] += amount[:, None] * laying.normal(fall)
-        return both.reshape(-1, 3)
+        if not pattern.alike:
+            across = np.array([1.0 if outer == 0 else -1.0, 1.0, 1.0])
+            both[outer] = across * self._wound(pattern, cloth, laying, across * both[outer], fall)
+        return both.reshape(-1, 3)[pattern.kept(cloth)]
+
+    def _wound(
+        self, pattern: Pattern, cloth: Cloth, laying: Laying, own: np.ndarray, fall: np.ndarray
+    ) -> np.ndarray:
+        """Positions (P, 3) [m] of the outer half, as if it were the left one: what lies beyond the sides in front is
+        bent backwards and goes on behind."""
+        single = np.array([panel.side != "" for panel in pattern.panels])[cloth.panel_of]
+        below = np.abs(fall) >= fall[single].min()
+        turn = float(np.abs(own[below & ~single, 0]).max()) + BEYOND
+        beyond = -turn - own[:, 0]
+        moved = (fall > 0) & (beyond > 0)
+        if not moved.any():
+            return own
+        front = laying.front + self.lift
+        line, outward = _spiral(turn, front, laying.back - self.lift, self.lift, float(beyond.max()))
+        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+        at, off = beyond[moved], own[moved, 2] - front
+        out = own.copy()
+        for axis, c in ((0, 0), (2, 1)):
+            out[moved, axis] = np.interp(at, arc, line[:, c]) + off * np.interp(at, arc, outward[:, c])
+        return out
 
     def _laying(self, ground: Ground) -> Laying:
         """Over a T-bar close to it, else over the highest point of arms and shoulders, the neck left out."""
@@ -114,6 +141,29 @@ class Laying:
         return np.stack([np.zeros(len(fall)), np.cos(angle), np.sin(angle)], axis=1)
 
 
+def _spiral(
+    turn: float, front: float, back: float, gap: float, length: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A line (n, 2) in x and z [m] of at least `length` that begins at -turn in front and goes backwards round
+    x = -turn and x = turn, `gap` further off each time it comes to the front or the back; its outward normals (n, 2).
+    """
+    points, outward = [np.array([[-turn, front]])], [np.array([[0.0, 1.0]])]
+    ahead, side, here, done = 1.0, -1.0, front, 0.0  # on which sheet, towards which end, z of the sheet
+    there = back
+    while done < length:
+        radius = 0.5 * abs(here - there)
+        angle = np.linspace(0.0, np.pi, int(np.pi * radius / FINE) + 2)[1:]
+        way = np.column_stack([side * np.sin(angle), ahead * np.cos(angle)])
+        points.append(np.array([side * turn, 0.5 * (here + there)]) + radius * way)
+        outward.append(way)
+        points.append(np.array([[-side * turn, there]]))
+        outward.append(np.array([[0.0, -ahead]]))
+        done += np.pi * radius + 2 * turn
+        here, there = there, here + ahead * gap
+        ahead, side = -ahead, -side
+    return np.concatenate(points), np.concatenate(outward)
+
+
 def laid(pattern: Pattern, cloth: Cloth, laying: Laying) -> tuple[np.ndarray, np.ndarray]:
     """Start positions (P, 3) [m] of all pattern vertices, and how far below the shoulder fold (P,) [m] each lies in
     front; behind it the figure is negative. Of a band it is that of the edge it lies along."""
@@ -132,7 +182,8 @@ def laid(pattern: Pattern, cloth: Cloth, laying: Laying) -> tuple[np.ndarray, np
 def _beside(
     pattern: Pattern, band: Panel, cloth: Cloth, own: np.ndarray, laying: Laying
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A band beside the edge it is sewn to: towards the middle in front, turned upright before it meets the neck."""
+    """A band beside the edge it is sewn to: towards the middle in front, turned upright before it meets the neck. Where
+    its free edge is longer, as mitres are, it goes on straight."""
     assert band.along is not None
     edge = cloth.along(band.along, pattern.panel(band.along.panel))
     sewn = _partner(pattern, band)
@@ -153,6 +204,10 @@ def _beside(
     away = np.abs(points[:, 0] - cloth.vertices[mine, 0].mean())
     lean, fall = at(rise), at(line[:, 1])
     flat = np.stack([at(line[:, c]) + away * np.cos(lean) * at(inwards[:, c]) for c in range(2)], axis=1)
+    beyond = points[:, 1] - np.clip(points[:, 1], arc.min(), arc.max())
+    for end, inner in ((order[0], order[1 % len(order)]), (order[-1], order[-2 % len(order)])):
+        own_end = (beyond * (arc[end] - arc[inner]) > 1e-9) & (len(order) > 1)
+        flat[own_end] += beyond[own_end, None] * (line[end] - line[inner]) / (arc[end] - arc[inner])
     out = laying.place(flat) + (away * np.sin(lean))[:, None] * laying.normal(fall)
     return out, fall
 

@@ -1,0 +1,219 @@
+"""A panel that one side of a mirrored pattern has alone: cut once, sewn to its half, laid round the back, thinned."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core import metrics
+from sim_core.body import Figure, Mannequin, pose_named
+from sim_core.errors import FileProblem
+from sim_core.garment import Garment, Pattern, choose_detail, dress, load_outfit
+from sim_core.garment.pattern import Cloth
+from sim_core.garment.placement import Flat, Ground
+
+ASSETS = Path(__file__).parents[2] / "assets"
+QUJU = ASSETS / "patterns" / "quju.toml"
+STEP = 0.04
+
+BAG = """\
+name = "bag"
+edge = 0.05
+mirror = true
+[[panel]]
+name = "sack"
+outline = [
+  { name = "top", at = [0, -200] }, { name = "low", at = [0, 200] },
+  { name = "corner", at = [200, 200] }, { name = "edge", at = [200, -200] },
+]
+[[panel]]
+name = "flap"
+side = "left"
+outline = [
+  { name = "low", at = [200, 200] }, { name = "far", at = [300, 200] },
+  { name = "tip", at = [300, -200] }, { name = "high", at = [200, -200] },
+]
+[[seam]]
+middle = "sack: top > low"
+[[seam]]
+joined = ["sack: corner > edge", "flap: low < high"]
+[[tie]]
+name = "tip"
+a = { panel = "flap", at = [300, 0] }
+b = { panel = "sack", side = "right", at = [0, 0] }
+length = 10
+"""
+
+
+def read(tmp_path: Path, text: str = BAG) -> Pattern:
+    path = tmp_path / "bag.toml"
+    path.write_text(text, "utf-8")
+    return Pattern.load(path)
+
+
+def area(points: np.ndarray, faces: np.ndarray) -> float:
+    a, b = (points[faces[:, k]] - points[faces[:, 0]] for k in (1, 2))
+    return 0.5 * float((a[:, 1] * b[:, 0] - a[:, 0] * b[:, 1]).sum())
+
+
+def test_it_is_cut_once_and_joined_to_its_own_half(tmp_path: Path) -> None:
+    pattern = read(tmp_path)
+    cut = pattern.cloth(0.05)
+    whole = pattern.whole(cut)
+    assert whole.names == ("sack left", "flap left", "sack right", "flap right")
+    assert area(whole.vertices, whole.faces) == pytest.approx(2 * 0.08 + 0.04)
+    assert not (whole.panel == 3).any()
+    assert not (whole.panel_of == 3).any()
+    assert (np.unique(whole.faces) == np.arange(len(whole.vertices))).all()
+    seam = pattern.seams[1]
+    assert seam.b is not None
+    a, b = (whole.along(path, pattern.panel(path.panel), " left") for path in (seam.a, seam.b))
+    assert (whole.joined[a] == whole.joined[b]).all()
+    assert len(np.unique(whole.joined)) == whole.joined.max() + 1
+    assert len(np.unique(whole.closed)) == whole.closed.max() + 1
+    assert not any(key.startswith("flap right") for key in whole.paths)
+    assert pattern.ties[0].a.side == "left"  # it need not be said
+
+
+def test_it_survives_the_way_through_a_dictionary(tmp_path: Path) -> None:
+    pattern = read(tmp_path)
+    again = Pattern.from_dict(pattern.to_dict())
+    assert [panel.side for panel in again.panels] == ["", "left"]
+    assert not again.alike
+    assert (
+        "side" not in pattern.panels[0].to_dict()
+    )  # as garments have it that were saved before there were any
+    assert (
+        again.whole(again.cloth(0.05)).vertices.tobytes()
+        == pattern.whole(pattern.cloth(0.05)).vertices.tobytes()
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("mirror = true", "", ["panel.flap.side", "mirror = true"]),
+        ('side = "left"', 'side = "middle"', ["panel.1.side", "'left'", "middle"]),
+        ('panel = "flap", at', 'panel = "flap", side = "right", at', ["tie.tip.a.side", "left alone"]),
+        ('middle = "sack: top > low"', 'middle = "flap: low > far"', ["seam.1.middle", "one side alone"]),
+        ('name = "sack"', 'name = "sack"\nside = "right"', ["seam.1.middle", "one side alone"]),
+    ],
+)
+def test_mistakes_name_file_and_key(tmp_path: Path, old: str, new: str, words: Sequence[str]) -> None:
+    assert old in BAG
+    with pytest.raises(FileProblem) as caught:
+        read(tmp_path, BAG.replace(old, new, 1))
+    assert str(caught.value).startswith(str(tmp_path / "bag.toml"))
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_panels_of_opposite_sides_are_not_sewn_together(tmp_path: Path) -> None:
+    text = BAG.replace('[[seam]]\nmiddle = "sack: top > low"\n', "").replace(
+        'name = "sack"', 'name = "sack"\nside = "right"', 1
+    )
+    with pytest.raises(FileProblem, match="never meet"):
+        read(tmp_path, text.replace('panel = "sack", side = "right"', 'panel = "sack"'))
+
+
+def laid(tmp_path: Path, reach: float = 560.0, over: str = "left") -> tuple[Cloth, np.ndarray]:
+    """The curved wrap robe, its point of `reach` [mm] tied nowhere, as it is laid: cloth, positions (P, 3)."""
+    text = re.sub(r"\[\[tie\]\].*?\n\n", "", QUJU.read_text("utf-8"), flags=re.DOTALL)
+    (tmp_path / "bag.toml").write_text(text, "utf-8")
+    pattern = Pattern.load(tmp_path / "bag.toml", {"reach": reach})
+    if over == "right":
+        panels = tuple(replace(p, side="right" if p.side else "") for p in pattern.panels)
+        pattern = replace(pattern, panels=panels)
+    figure = Figure(Mannequin.load(ASSETS / "mannequins" / "woman.npz"))
+    pose = pose_named("t")
+    vertices, faces = figure.mesh(pose)
+    ground = Ground(vertices, faces, trunk=figure.trunk())
+    cut = pattern.cloth(STEP)
+    return pattern.whole(cut), Flat(over=over).whole(pattern, cut, ground)
+
+
+@pytest.mark.parametrize("over", ["left", "right"])
+def test_what_lies_beyond_the_sides_goes_on_round_the_back(tmp_path: Path, over: str) -> None:
+    """Without strain, outside of all that is laid flat, and as far as it is long."""
+    cloth, x = laid(tmp_path, reach=900.0, over=over)
+    point = cloth.panel == cloth.names.index(f"point {over}")
+    assert np.abs(metrics.area_strain(cloth.vertices, x, cloth.faces[point])).max() < 0.005
+    own = np.unique(cloth.faces[point])
+    towards = -1.0 if over == "left" else 1.0  # across the front to the other side of the wearer
+    flat = np.array([not name.startswith("point") for name in cloth.names])
+    body = x[np.unique(cloth.faces[flat[cloth.panel]])]
+    body = body[np.abs(body[:, 1] - 0.6) < 0.3]  # below the sleeves
+    out = x[own[x[own, 2] < 0.05]]
+    beside, behind = towards * out[:, 0] > (towards * body[:, 0]).max(), out[:, 2] < body[:, 2].min()
+    assert behind.sum() > 10
+    assert (beside | behind).all()
+    whole = np.zeros((cloth.joined.max() + 1, 3))
+    whole[cloth.joined] = x
+    below = cloth.faces[(np.abs(cloth.vertices[cloth.faces, 1]) > 0.3).all(1)]
+    assert metrics.intersections(whole, cloth.joined[below]) == 0
+
+
+def test_a_longer_point_goes_round_again_outside_of_itself(tmp_path: Path) -> None:
+    cloth, x = laid(tmp_path, reach=3200.0)
+    point = cloth.panel == cloth.names.index("point left")
+    assert np.abs(metrics.area_strain(cloth.vertices, x, cloth.faces[point])).max() < 0.005
+    own = np.unique(cloth.faces[point])
+    turns = np.unwrap(np.arctan2(x[own, 0], x[own, 2])[np.argsort(-cloth.vertices[own, 0])])
+    assert np.ptp(turns) > 2 * np.pi
+    whole = np.zeros((cloth.joined.max() + 1, 3))
+    whole[cloth.joined] = x
+    below = cloth.faces[(np.abs(cloth.vertices[cloth.faces, 1]) > 0.3).all(1)]
+    assert metrics.intersections(whole, cloth.joined[below]) == 0
+
+
+@pytest.fixture(scope="module")
+def robe() -> Garment:
+    """The shipped outfit's robe by itself, coarse and not yet at rest."""
+    outfit = load_outfit(ASSETS / "outfits" / "quju.toml", content=ASSETS)
+    layer = next(layer for layer in outfit.layers if layer.pattern.name == "quju")
+    steps = tuple(
+        replace(step, seconds=min(step.seconds, 1.0)) if step.do == "rest" else step
+        for step in layer.program.steps
+    )
+    program = replace(layer.program, steps=steps)
+    (garment,) = dress(replace(outfit, layers=(replace(layer, edge=0.05, program=program),)))
+    return garment
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_a_robe_with_a_point_is_dressed(robe: Garment) -> None:
+    """Sewn, its point behind the wearer and outside of the back."""
+    facts = robe.provenance["errors"]
+    assert facts["inside_midpoints"] == facts["inside_centroids"] == 0
+    assert facts["clearance_m"][0] > -0.0025  # triangles of 5 cm: less than a layer's thickness
+    assert facts["seam_gap_m"] == 0.0
+    assert facts["layer_order"] <= 5
+    assert facts["area_strain_p95"] <= 0.03
+    assert "asymmetry_m" not in facts  # its halves are not alike
+    x, point = robe.worn(), np.unique(robe.pattern_faces[robe.panel == robe.panels.index("point left")])
+    tip = point[np.argmin(robe.pattern[point, 0])]
+    assert x[tip, 0] > 0.1  # it went from the middle of the front by the right and the back to the left side
+    behind = {
+        name: np.unique(robe.pattern_faces[robe.panel == robe.panels.index(name)])
+        for name in ("point left", "back right")
+    }
+    low = {name: own[np.abs(x[own, 1] - 0.75) < 0.1] for name, own in behind.items()}
+    assert x[low["point left"], 2].min() < x[low["back right"], 2].min()  # and lies outside
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_a_robe_with_a_point_is_thinned_whole(robe: Garment, tmp_path: Path) -> None:
+    robe.save(tmp_path / "robe.npz")
+    again = Garment.load(tmp_path / "robe.npz")
+    assert again.positions.tobytes() == robe.positions.tobytes()
+    level = choose_detail(again, 0.02)
+    assert len(level.faces) < len(robe.faces)
+    assert area(level.pattern, level.pattern_faces) == pytest.approx(
+        area(robe.pattern, robe.pattern_faces),
+        rel=1e-3,  # curved edges have longer chords
+    )
