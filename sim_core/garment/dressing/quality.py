@@ -50,7 +50,7 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
     if layer.pattern.seams:
         errors["seam_gap_m"] = seam_gap(garment, layer.cloth)
         errors["seam_ease"] = max((fit.ease for fit in layer.cut.fits), default=0.0)
-    if layer.pattern.mirror and layer.pattern.alike:
+    if layer.pattern.alike:
         worn = garment.worn()
         half = len(worn) // 2
         away = np.linalg.norm(worn[half:] - worn[:half] * [-1.0, 1.0, 1.0], axis=1)

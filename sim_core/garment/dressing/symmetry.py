@@ -47,11 +47,7 @@ def _alike(layer: Layer) -> bool:
     """Whether a layer's two halves are cut, placed and held alike, and keep to their own sides."""
     pattern, steps = layer.pattern, layer.program.steps
     spots = [spot for step in steps for spot in step.spots if isinstance(spot, Spot)]
-    if (
-        not (pattern.mirror and pattern.alike and layer.place.halves)
-        or pattern.ties
-        or any(spot.side for spot in spots)
-    ):
+    if not (pattern.alike and layer.place.halves) or pattern.ties or any(spot.side for spot in spots):
         return False
     if any(step.belt is not None for step in steps):
         return False

@@ -46,7 +46,7 @@ def thinned(garment: Garment, counts: Sequence[int], moments: Sequence[np.ndarra
     is thinned and mirrored, as it moves on either side. The last one may come again when nothing more can go.
     """
     pattern = Pattern.from_dict(garment.cut) if garment.cut else None
-    twice = 2 if pattern is not None and pattern.mirror and pattern.alike else 1
+    twice = 2 if pattern is not None and pattern.alike else 1
     vertices, faces = len(garment.pattern) // twice, len(garment.pattern_faces) // twice
     own, weld = np.unique(garment.weld[:vertices], return_inverse=True)
     moved = [places[own] for places in moments]

@@ -136,8 +136,8 @@ class Pattern:
 
     @property
     def alike(self) -> bool:
-        """Whether no panel is cut for one side alone."""
-        return not any(panel.side for panel in self.panels)
+        """Whether it is mirrored and both halves have the same panels."""
+        return self.mirror and not any(panel.side for panel in self.panels)
 
     def kept(self, cut: Cloth) -> np.ndarray:
         """Which (2P,) vertices of a mirrored pattern's cloth (P) and of its image are cut."""

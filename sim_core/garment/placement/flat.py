@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.garment.pattern import Cloth, Panel, Path, Pattern
+from sim_core.garment.pattern.panels import arc_length
 from sim_core.garment.placement.ground import Ground
 
 __all__ = ["Flat", "Laying", "laid"]
@@ -77,7 +78,7 @@ class Flat:
             return own
         front = laying.front + self.lift
         line, outward = _spiral(turn, front, laying.back - self.lift, self.lift, float(beyond.max()))
-        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+        arc = arc_length(line)
         at, off = beyond[moved], own[moved, 2] - front
         out = own.copy()
         for axis, c in ((0, 0), (2, 1)):
