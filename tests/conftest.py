@@ -5,6 +5,7 @@ import itertools
 import os
 import subprocess
 import warnings
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,20 @@ def started(pgserver, folder: Path):
         with contextlib.suppress(subprocess.TimeoutExpired):
             return pgserver.get_server(folder, cleanup_mode="delete")
     raise AssertionError("PostgreSQL did not start in five minutes")
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Beside the slowest tests the slowest files: what tests share, they wait for together, and on one core."""
+    if not terminalreporter.config.option.durations:
+        return
+    seconds = Counter()
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if hasattr(report, "duration"):
+                seconds[report.nodeid.partition("::")[0]] += report.duration
+    terminalreporter.section(f"slowest files of {seconds.total():.0f} s")
+    for name, spent in seconds.most_common(60):
+        terminalreporter.write_line(f"{spent:8.1f}s {name}")
 
 
 # Elsewhere PostgreSQL is of the night.

@@ -142,6 +142,21 @@ def test_a_belt_shorter_than_the_wearer_is_refused(tmp_path: Path) -> None:
         of(tmp_path, close=BELT.replace('"close"', '"settle"'))
 
 
+def test_a_belt_does_not_squeeze_what_is_worn_beneath(tmp_path: Path) -> None:
+    """Said as soon as that is dressed: the robe beneath hangs, wider than the belt."""
+    it = of(tmp_path, close=BELT)
+    (robe,) = it.layers
+    loose = replace(robe.program, steps=robe.program.steps[:4])
+    within = replace(robe, name="within", program=loose)
+    layers: set[int] = set()
+    with pytest.raises(
+        SimCoreError,
+        match=r"layer\.2\.step: belt: 80\.0 cm, 'within' beneath is \d{2,3}\.\d cm round there – draw that in first",
+    ):
+        dress(replace(it, layers=(within, robe)), on_frame=lambda frame: layers.add(frame.layer))
+    assert layers == {0}
+
+
 @pytest.mark.slow
 def test_a_hem_that_is_longer_than_its_wearer_trails_on_the_floor(tmp_path: Path) -> None:
     it = of(tmp_path, measures="measures = { length = 1740 }\norigin = [10, 20]")

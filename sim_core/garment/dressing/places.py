@@ -15,7 +15,7 @@ from sim_core.garment.pattern import SIDES, Cloth, Spot, both_halves, latches
 from sim_core.garment.pattern.sections import hull_girth
 from sim_core.metrics import components
 
-__all__ = ["Places", "belt_pairs", "nearest"]
+__all__ = ["Places", "belt_pairs", "girth_there", "nearest"]
 
 OPEN = (
     np.pi / 2
@@ -134,6 +134,13 @@ def belt_pairs(
     pairs = np.column_stack([ring, np.roll(ring, -1)]).astype(np.int32)
     apart = np.linalg.norm(x[pairs[:, 0]] - x[pairs[:, 1]], axis=1)
     return pairs, apart * min(1.0, length / float(apart.sum()))
+
+
+def girth_there(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> float:
+    """How long [m] a string round the garment x (V, 3), faces (F, 3) is that is drawn at the height of `centre` (3,)
+    without squeezing it; 0 where it does not go round there."""
+    own = _round(x, faces, centre)
+    return hull_girth(x[own][:, [0, 2]]) if len(own) else 0.0
 
 
 def _round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +12,7 @@ from sim_core.cloth import Contact, Drape, Holds, drape
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
 from sim_core.garment.dressing.materials import Materials, materials_of
-from sim_core.garment.dressing.places import Places, belt_pairs
+from sim_core.garment.dressing.places import Places, belt_pairs, girth_there
 from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
 from sim_core.garment.dressing.wearing import Wearing
 from sim_core.garment.outfit import Belt, Layer
@@ -64,6 +64,7 @@ class Runs:
         hooks: Callable[[int, Spread], dict[str, Any]],
     ) -> Ran:
         """All of them from positions and velocities (P, 3) of the pattern vertices; hooks: of `drape`, for each run."""
+        self._check_belts()
         panels = self.layer.pattern.panels
         apart = np.array([k if panel.along else 0 for k, panel in enumerate(panels)] or [0])
         kind, apart = materials.of_faces(self.cloth), apart[self.cloth.panel % len(apart)]
@@ -136,20 +137,43 @@ class Runs:
             **bounds,
         )
 
-    def _lay_belts(self, course: Course, sheet: SewnSheet, x: np.ndarray) -> None:
-        """Belts that join in this run go round the cloth as it lies at x (V, 3) [m]; they stay where they are then."""
-        figure = self.wearing.figure
+    def _belts(self, course: Course) -> Iterator[tuple[Belt, int, np.ndarray]]:
+        """Each belt of a course, the key of the pose it begins in, and the middle (3,) [m] that it goes round there."""
+        figure, key = self.wearing.figure, course.steps[0].keys[0]
+        if figure is None:
+            return
         for belt in course.belts:
-            if belt in self.belts or figure is None:
-                continue
-            pose = self.wearing.moves.poses[course.steps[0].keys[0]]
+            pose = self.wearing.moves.poses[key]
             centre = figure.mannequin.landmarks(pose)[belt.mark] + [0.0, belt.rise, 0.0]
             centre[[0, 2]] = figure.middle(pose, float(centre[1]))
+            yield belt, key, centre
+
+    def _check_belts(self) -> None:
+        """What is worn beneath does not give way: by a tighter belt cloth would be pressed through it and itself."""
+        for belt, key, centre in (told for course in self.courses for told in self._belts(course)):
+            for layer, worn in zip(self.wearing.outfit.layers, self.wearing.meshes(key), strict=False):
+                girth = girth_there(*worn, centre)
+                if belt.length < girth:
+                    raise SimCoreError(
+                        f"{self._key}.step: belt: {100 * belt.length:.1f} cm, {layer.name!r} beneath is "
+                        f"{100 * girth:.1f} cm round there – draw that in first by a belt of its own, or make this "
+                        "one longer"
+                    )
+
+    def _lay_belts(self, course: Course, sheet: SewnSheet, x: np.ndarray) -> None:
+        """Belts that join in this run go round the cloth as it lies at x (V, 3) [m]; they stay where they are then."""
+        for belt, _, centre in self._belts(course):
+            if belt in self.belts:
+                continue
             try:
                 self.belts[belt] = belt_pairs(x, sheet.sheet.faces, centre, belt.length, self.layer.edge)
             except SimCoreError as error:
-                key = self.wearing.outfit.key(self.number)
-                raise SimCoreError(f"{key}.step: belt: {error}") from error
+                raise SimCoreError(f"{self._key}.step: belt: {error}") from error
+
+    @property
+    def _key(self) -> str:
+        """How errors name the layer."""
+        return self.wearing.outfit.key(self.number)
 
     def _gap(self, x: np.ndarray) -> float:
         """Largest distance [m] of two pattern vertices at x (P, 3) that are one point of the closed garment."""
