@@ -1,6 +1,11 @@
 """Pictures of the running hall: Enter screen, entry, every bay and exhibit, close-ups, panel, windows, form, phone.
 
 python tests/bench/pictures.py [--content FOLDER] [--out docs/pictures] [--only NAME …] [--png]
+python tests/bench/pictures.py --pairs CHECKOUT [--studies FOLDER] --out FOLDER
+                                  ten views beside the same of an earlier hall, and of studies, for who does not know
+                                  which is which
+python tests/bench/pictures.py --tally FOLDER
+                                  what readers of these pairs chose
 """
 
 import argparse
@@ -14,6 +19,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT))
 
 from bench.browser import enter, open_browser  # noqa: E402
+from bench.picture_pairs import lay_pairs, tally  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
 DESK, PHONE = {"width": 1280, "height": 720}, {"width": 390, "height": 844}
@@ -155,7 +161,18 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures")
     parser.add_argument("--only", nargs="*", default=(), metavar="NAME", help="pictures whose names begin so")
     parser.add_argument("--png", action="store_true", help="lossless, for comparing")
+    parser.add_argument(
+        "--pairs", type=Path, metavar="CHECKOUT", help="of an earlier hall (git worktree add)"
+    )
+    parser.add_argument("--studies", type=Path, metavar="FOLDER", help="pictures of studies, for --pairs")
+    parser.add_argument("--tally", type=Path, metavar="FOLDER", help="of pairs and choices-NAME.json")
     arguments = parser.parse_args()
+    if arguments.tally:
+        print(tally(arguments.tally))
+        return 0
+    if arguments.pairs:
+        lay_pairs(arguments.content, arguments.pairs, arguments.studies, arguments.out)
+        return 0
     arguments.out.mkdir(parents=True, exist_ok=True)
     album = Album(arguments.out, tuple(arguments.only), arguments.png)
     with (
