@@ -23,7 +23,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-SUITE = (sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
+# Name by name: of a test that hangs the log has the begin.
+SUITE = (sys.executable, "-m", "pytest", "-v", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
 OTHER = (sys.executable, "tests/machines.py", "--only")
 RECKONING = (
     "tests/sim_core",

@@ -140,9 +140,14 @@ class _Laid:
         return laid
 
     def on_sheet(self, points: Points) -> Points:
-        """Points (N, 2) [m] of the panel where they lie on the sheet [mm]."""
+        """Points (N, 2) [m] of the panel where they lie on the sheet [mm], as it is cut: what the right side alone has
+        is the image of what its pattern draws. Of what both halves have one or the other lies there."""
         flat = 1000 * np.asarray(points, float).reshape(-1, 2)
-        return (flat[:, [1, 0]] if self.turned else flat) + self.shift
+        flat = flat * [-1.0, 1.0] if self.panel.side == "right" else flat
+        if self.turned:
+            twice = self.pattern.mirror and not self.panel.side
+            flat = flat[:, [1, 0]] * [1.0, 1.0 if twice else -1.0]
+        return flat + self.shift
 
     def strokes(self, line: float) -> Iterator[Stroke]:
         """Outline, shoulder fold, grain and measures."""
@@ -262,9 +267,10 @@ def _framed(
 def _heading(pattern: Pattern) -> tuple[str, str]:
     """What a pattern's part of the legend is called, Chinese and English."""
     zh, en = (pattern.title.get(language, pattern.name) for language in ("zh", "en"))
-    half = (
-        ("，一半，翻转再裁一次", "; one half, cut a second time turned over") if pattern.mirror else ("", "")
-    )
+    twice = pattern.mirror and any(not panel.side for panel in pattern.panels)
+    half = ("，一半，翻转再裁一次", "; one half, cut a second time turned over") if twice else ("", "")
+    if twice and not pattern.alike:
+        half = ("，一半，除只裁一身者翻转再裁一次", f"{half[1]}, but for what one side has alone")
     return f"{zh}，毫米{half[0]}", f"{en}, millimetres{half[1]}"
 
 

@@ -51,6 +51,8 @@ An outfit file:
   start = "t"                         # pose the wearer begins in (wrapped, along_path), which a pose step leaves
   [layer.place]
   way = "flat"                        # flat, wrapped, upright, over_bar, along_path, folded; each has its keys
+                                      # flat: over = "left", the front that lies outside; what it has beyond the side,
+                                      # of panels cut for that side alone (side = "left"), goes on round the back
   [[layer.step]]                      # only where the usual steps do not do
   do = "sew"                          # sew, weld, pin, release, close, pose, settle, rest
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label
@@ -60,8 +62,9 @@ An outfit file:
   seconds = 6.0
 
 Files are found beside the folder `outfits` the file lies in, or in --content. What cannot be dressed is refused
-before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result: with --out,
---glb or --picture, beside which states are kept until all of them are written. Without any nothing is kept.
+before anything runs, a belt tighter than what is worn beneath before its layer does. Interrupted, the same command goes
+on where it stopped and comes to the same result: with --out, --glb or --picture, beside which states are kept until all
+of them are written. Without any nothing is kept.
 """
 
 

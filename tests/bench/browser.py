@@ -81,17 +81,28 @@ def displayed(page) -> list[float]:
     return page.evaluate("() => hall.displayed()")
 
 
-# Where the picture is seen from, once twelve frames in a row have not changed it.
+# Waits until twelve frames in a row have not changed what TELLS, and hands that back; an error where it goes on
+# changing, or where no frame comes: a promise that nothing keeps would be waited for for ever.
 AT_REST = """
-async () => {
+async (patience) => {
+  const tell = () => JSON.stringify(TELLS);
   const frames = (n) => new Promise((done) => {
     const next = () => (n-- ? requestAnimationFrame(next) : done());
     next();
   });
-  for (let before = null; ; before = hall.displayed().join()) {
-    await frames(12);
-    if (before === hall.displayed().join()) return hall.displayed();
-  }
+  let before = null, over = false;
+  const rest = async () => {
+    while (!over) {
+      await frames(12);
+      if (before === tell()) return JSON.parse(before);
+      before = tell();
+    }
+  };
+  const late = new Promise((_, fail) => setTimeout(() => {
+    over = true;
+    fail(new Error(`not at rest after ${patience} ms: ${before}, now ${tell()}`));
+  }, patience));
+  return Promise.race([rest(), late]);
 }
 """
 
@@ -99,7 +110,12 @@ async () => {
 def at_rest(page) -> list[float]:
     """Where the picture is seen from [m] once its camera has come to rest, however long a frame takes."""
     page.wait_for_timeout(300)  # it sets out
-    return page.evaluate(AT_REST)
+    return rested(page, "hall.displayed()")
+
+
+def rested(page, tells: str):
+    """What a JavaScript expression tells once frames no longer change it."""
+    return page.evaluate(AT_REST.replace("TELLS", tells), PATIENCE)
 
 
 def soon(page, holds: Callable[[], object], patience: float = 30.0) -> None:

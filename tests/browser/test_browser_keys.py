@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from bench.browser import displayed, enter, soon
+from bench.browser import displayed, enter, rested, soon
 from bench.track import place
 from full_matrix import by_day
 from plain_hall import EXHIBIT, write_plain_hall
@@ -22,20 +22,6 @@ TURNS = """
   const note = ({ code, timeStamp, repeat }) =>
     !repeat && /KeyQ|KeyE|Arrow/.test(code) && window.__turns.push(timeStamp);
   for (const kind of ["keydown", "keyup"]) addEventListener(kind, note, true);
-}
-"""
-
-# Waits until nothing turns any more, and hands back the pose.
-STILL = """
-async () => {
-  const frames = (n) => new Promise((done) => {
-    const next = () => (n-- ? requestAnimationFrame(next) : done());
-    next();
-  });
-  for (let before = null; ; before = hall.pose()) {
-    await frames(12);
-    if (before && before.yaw === hall.pose().yaw && before.pitch === hall.pose().pitch) return before;
-  }
 }
 """
 
@@ -97,7 +83,7 @@ def standing(page):
 
 def still(page) -> dict:
     """The pose once nothing turns any more."""
-    return page.evaluate(STILL)
+    return rested(page, "hall.pose()")
 
 
 def tap(page, key: str) -> None:

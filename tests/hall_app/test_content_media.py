@@ -190,6 +190,25 @@ def test_a_sheet_says_which_panel_is_cut_for_one_side_alone():
     assert "sleeve" in told
 
 
+@pytest.mark.parametrize("length", [0.3, 1.0])  # the second is turned on the sheet
+def test_what_one_side_has_alone_is_drawn_as_it_is_cut(length):
+    """A sheet is printed at true size and cut along its lines: an image of such a panel would be of the other side."""
+    leg = np.array([[0.0, -length], [0.3, length], [0.0, length]])
+    legs = tuple(np.array([p, q]) for p, q in zip(leg, [*leg[1:], leg[0]], strict=True))
+
+    def turns(side: str) -> float:
+        pattern = Pattern(
+            "point", leg, 0.05, panels=(Panel("point", tuple("abc"), legs, side=side),), mirror=True
+        )
+        (drawn,) = (s.points for s in cutting_plan([pattern], ("角", "Point")).strokes if s.kind == "outline")
+        (ax, ay), (bx, by) = drawn[1] - drawn[0], drawn[2] - drawn[0]
+        return float(ax * by - ay * bx)
+
+    as_drawn = 0.3 * 2 * length * 1e6
+    assert turns("left") == pytest.approx(as_drawn)
+    assert turns("right") == pytest.approx(-as_drawn)
+
+
 def test_panels_of_a_sheet_lie_apart():
     found = outlines(plan_svg(cutting_plan([half(), half(length=0.2), strip(2.4)], ("衣", "Coat"))))
     boxes = [(outline.min(0), outline.max(0)) for outline in found]

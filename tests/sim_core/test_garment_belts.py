@@ -151,7 +151,7 @@ def test_a_belt_does_not_squeeze_what_is_worn_beneath(tmp_path: Path) -> None:
     layers: set[int] = set()
     with pytest.raises(
         SimCoreError,
-        match=r"layer\.2\.step: belt: 80\.0 cm, 'within' beneath is \d{2,3}\.\d cm round there – draw that in first",
+        match=r"layer\.2\.step\.5\.belt\.length: 80\.0 cm, round 'within' beneath it is \d{2,3}\.\d cm there – draw",
     ):
         dress(replace(it, layers=(within, robe)), on_frame=lambda frame: layers.add(frame.layer))
     assert layers == {0}

@@ -1,6 +1,8 @@
 """A panel that one side of a mirrored pattern has alone: cut once, sewn to its half, laid round the back, thinned."""
 
+import json
 import re
+import shutil
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +12,10 @@ import pytest
 
 from sim_core import metrics
 from sim_core.body import Figure, Mannequin, pose_named
-from sim_core.errors import FileProblem
+from sim_core.cli import main
+from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment import Garment, Pattern, choose_detail, dress, load_outfit
+from sim_core.garment.dressing import capped
 from sim_core.garment.pattern import Cloth
 from sim_core.garment.placement import Flat, Ground
 
@@ -45,6 +49,17 @@ name = "tip"
 a = { panel = "flap", at = [300, 0] }
 b = { panel = "sack", side = "right", at = [0, 0] }
 length = 10
+"""
+
+
+BESIDE = """\
+[[panel]]
+name = "edging"
+along = "flap: far > tip"
+outline = [
+  { name = "a", at = [0, 0] }, { name = "b", at = [30, 0] },
+  { name = "c", at = [30, 400] }, { name = "d", at = [0, 400] },
+]
 """
 
 
@@ -96,8 +111,9 @@ def test_it_survives_the_way_through_a_dictionary(tmp_path: Path) -> None:
     ("old", "new", "words"),
     [
         ("mirror = true", "", ["panel.flap.side", "mirror = true"]),
-        ('side = "left"', 'side = "middle"', ["panel.1.side", "'left'", "middle"]),
+        ('side = "left"', 'side = "middle"', ["panel.2.side", "'left'", "middle"]),
         ('panel = "flap", at', 'panel = "flap", side = "right", at', ["tie.tip.a.side", "left alone"]),
+        ("[[seam]]\nmiddle", BESIDE + "[[seam]]\nmiddle", ["panel.edging.side", "'flap'", "left alone"]),
         ('middle = "sack: top > low"', 'middle = "flap: low > far"', ["seam.1.middle", "one side alone"]),
         ('name = "sack"', 'name = "sack"\nside = "right"', ["seam.1.middle", "one side alone"]),
     ],
@@ -119,14 +135,112 @@ def test_panels_of_opposite_sides_are_not_sewn_together(tmp_path: Path) -> None:
         read(tmp_path, text.replace('panel = "sack", side = "right"', 'panel = "sack"'))
 
 
-def laid(tmp_path: Path, reach: float = 560.0, over: str = "left") -> tuple[Cloth, np.ndarray]:
-    """The curved wrap robe, its point of `reach` [mm] tied nowhere, as it is laid: cloth, positions (P, 3)."""
+GORE = """
+[[panel]]
+name = "p"
+outline = [
+  { name = "top", at = [0, 0] }, { name = "low", at = [0, 400] },
+  { name = "hem", at = [150, 400] }, { name = "apex", at = [200, 0] },
+]
+[[panel]]
+name = "gore"
+side = "left"
+outline = [{ name = "apex", at = [200, 0] }, { name = "near", at = [150, 400] }, { name = "far", at = [250, 400] }]
+[[panel]]
+name = "q"
+outline = [
+  { name = "apex", at = [200, 0] }, { name = "hem", at = [250, 400] },
+  { name = "corner", at = [400, 400] }, { name = "edge", at = [400, 0] },
+]
+[[seam]]
+middle = "p: top > low"
+[[seam]]
+KIND = ["p: apex < hem", "gore: apex > near"]
+[[seam]]
+KIND = ["q: apex > hem", "gore: apex < far"]
+"""
+
+
+@pytest.mark.parametrize("kind", ["joined", "sewn"])
+def test_what_it_joins_on_its_own_side_stays_apart_on_the_other(tmp_path: Path, kind: str) -> None:
+    """A gore set into a slit: on the right, where there is none, nothing holds the slit's sides together."""
+    pattern = read(tmp_path, 'name = "slit"\nedge = 0.05\nmirror = true\n' + GORE.replace("KIND", kind))
+    whole = pattern.whole(pattern.cloth(0.05))
+    for side, met in (("left", True), ("right", False)):
+        p, q = (whole.closed[whole.panel_of == whole.names.index(f"{name} {side}")] for name in "pq")
+        assert (len(np.intersect1d(p, q)) > 0) is met
+    right = np.isin(whole.panel_of, [k for k, name in enumerate(whole.names) if name.endswith("right")])
+    assert not np.isin(whole.pairs, whole.joined[right]).any()
+    capped(np.column_stack([whole.vertices, np.zeros(len(whole.vertices))]), whole.closed[whole.faces])
+
+
+def test_each_side_may_have_its_own_on_one_edge(tmp_path: Path) -> None:
+    """A wide flap for the left, a narrow one for the right: they never meet."""
+    small = """\
+[[panel]]
+name = "small"
+side = "right"
+outline = [
+  { name = "low", at = [200, 200] }, { name = "far", at = [240, 200] },
+  { name = "tip", at = [240, -200] }, { name = "high", at = [200, -200] },
+]
+[[seam]]
+joined = ["sack: corner > edge", "small: low < high"]
+[[tie]]"""
+    pattern = read(tmp_path, BAG.replace("[[tie]]", small, 1))
+    whole = pattern.whole(pattern.cloth(0.05))
+    assert area(whole.vertices, whole.faces) == pytest.approx(2 * 0.08 + 0.04 + 0.016)
+    for seam, side in zip(pattern.seams[1:], (" left", " right"), strict=True):
+        assert seam.b is not None
+        a, b = (whole.along(path, pattern.panel(path.panel), side) for path in (seam.a, seam.b))
+        assert (whole.joined[a] == whole.joined[b]).all()
+    with pytest.raises(FileProblem, match="sewn already"):
+        read(tmp_path, BAG.replace("[[tie]]", small.replace('"right"', '"left"'), 1))
+
+
+def test_other_formats_have_it_once(tmp_path: Path) -> None:
+    read(tmp_path)
+    assert main(["mesh", str(tmp_path / "bag.toml"), "--pattern", str(tmp_path / "bag.json")]) == 0
+    code = json.loads((tmp_path / "bag.json").read_text("utf-8"))["pattern"]
+    assert sorted(code["panels"]) == ["flap", "sack", "sack_other"]
+    assert len(code["stitches"]) == 2
+    assert main(["mesh", str(tmp_path / "bag.json"), "--pattern", str(tmp_path / "back.toml")]) == 0
+    back = Pattern.load(tmp_path / "back.toml")
+    assert [panel.side for panel in back.panels] == ["", "left"]
+
+
+def test_pins_know_what_the_right_side_has_alone(tmp_path: Path) -> None:
+    """The nape is on the first panel, though that is the second half's alone: it stays while all else falls."""
+    text = BAG.replace('side = "right", at = [0, 0]', "at = [0, 0]").replace(
+        'side = "left"', 'side = "right"'
+    )
+    head, sack, flap, seams = re.split(r"(?=\[\[panel\]\])|(?=\[\[seam\]\]\nmiddle)", text)
+    read(tmp_path, head + flap + sack + seams)
+    steps = '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n[[layer.step]]\ndo = "settle"\nseconds = 0.12\n'
+    layer = f'[[layer]]\npattern = "bag.toml"\nweave = "juan.toml"\nedge = 0.05\n{steps}'
+    (tmp_path / "it.toml").write_text(f'stand = {{ kind = "t_bar", height = 1.6 }}\n{layer}', "utf-8")
+    shutil.copy(ASSETS / "weaves" / "juan.toml", tmp_path)
+    frames: list[np.ndarray] = []
+    (garment,) = dress(
+        load_outfit(tmp_path / "it.toml", tmp_path), on_frame=lambda f: frames.append(f.positions)
+    )
+    moved = np.linalg.norm(frames[-1] - frames[0], axis=1)
+    flap_right = np.unique(garment.pattern_faces[garment.panel == garment.panels.index("flap right")])
+    assert moved.max() > 0.01
+    assert (moved[flap_right] < 1e-6).any()
+
+
+def laid(
+    tmp_path: Path, reach: float = 560.0, over: str = "left", side: str = "", also: Sequence[str] = ()
+) -> tuple[Cloth, np.ndarray]:
+    """The curved wrap robe, its point of `reach` [mm] tied nowhere, as it is laid: cloth, positions (P, 3). side: that
+    has the point, the outer one unless it is told; also: what it has alone besides."""
     text = re.sub(r"\[\[tie\]\].*?\n\n", "", QUJU.read_text("utf-8"), flags=re.DOTALL)
     (tmp_path / "bag.toml").write_text(text, "utf-8")
     pattern = Pattern.load(tmp_path / "bag.toml", {"reach": reach})
-    if over == "right":
-        panels = tuple(replace(p, side="right" if p.side else "") for p in pattern.panels)
-        pattern = replace(pattern, panels=panels)
+    own = side or over
+    panels = tuple(replace(p, side=own if p.side or p.name in also else "") for p in pattern.panels)
+    pattern = replace(pattern, panels=panels)
     figure = Figure(Mannequin.load(ASSETS / "mannequins" / "woman.npz"))
     pose = pose_named("t")
     vertices, faces = figure.mesh(pose)
@@ -167,6 +281,20 @@ def test_a_longer_point_goes_round_again_outside_of_itself(tmp_path: Path) -> No
     whole[cloth.joined] = x
     below = cloth.faces[(np.abs(cloth.vertices[cloth.faces, 1]) > 0.3).all(1)]
     assert metrics.intersections(whole, cloth.joined[below]) == 0
+
+
+def test_an_inner_front_does_not_go_round(tmp_path: Path) -> None:
+    with pytest.raises(SimCoreError, match="over = 'right': a front of the left reaches beyond"):
+        laid(tmp_path, over="right", side="left")
+
+
+def test_another_panel_of_one_side_does_not_hold_the_point_back(tmp_path: Path) -> None:
+    """The lapel of the left alone begins as high as the sleeves, which nothing turns round."""
+    cloth, x = laid(tmp_path)
+    other, y = laid(tmp_path, also=("lapel", "lapel_band"))
+    for name in ("point left", "point_band left"):
+        (a, b) = (np.unique(one.faces[one.panel == one.names.index(name)]) for one in (cloth, other))
+        assert y[b] == pytest.approx(x[a], abs=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -191,9 +191,9 @@ def test_cloth_that_lies_over_pleats_touches_none_and_has_no_step() -> None:
         ("depth = 45 -> depth = 1", "panel.left.pleats.1.depth: 1 mm"),
         ("step = 24, towards -> step = 0, towards", "panel.left.pleats.1.step"),
         ("opens = 60 }] -> opens = 60 }, { at = 300, depth = 20 }]", "panel.left.pleats: one takes up"),
-        ("count = 5 -> count = 0", "pleats.0.count"),
-        ("opens = 60 -> opens = 200", "pleats.0.opens"),
-        ('towards = "end" -> towards = "front"', "pleats.0.towards"),
+        ("count = 5 -> count = 0", "pleats.1.count"),
+        ("opens = 60 -> opens = 200", "pleats.1.opens"),
+        ('towards = "end" -> towards = "front"', "pleats.1.towards"),
     ],
 )
 def test_pleats_that_cannot_be_folded_are_refused(tmp_path: Path, change: str, told: str) -> None:

@@ -108,15 +108,16 @@ def _check_belts(key: str, layer: Layer, pose: Pose, figure: Figure) -> None:
         if step.belt is None:
             continue
         height = float(figure.mannequin.landmarks(pose)[step.belt.mark][1]) + step.belt.rise
+        told = f"{key}.{step.key or f'step.{number}'}.belt"
         girth = figure.girth(pose, height)
         if not girth:
             raise SimCoreError(
-                f"{key}.step.{number}.belt.rise: {100 * step.belt.rise:.1f} cm from the {step.belt.mark} there is "
+                f"{told}.rise: {100 * step.belt.rise:.1f} cm from the {step.belt.mark} there is "
                 "nothing of the wearer to go round – bring it nearer"
             )
         if step.belt.length < girth + ROOM:
             raise SimCoreError(
-                f"{key}.step.{number}.belt.length: {100 * step.belt.length:.1f} cm, the wearer is {100 * girth:.1f} cm "
+                f"{told}.length: {100 * step.belt.length:.1f} cm, the wearer is {100 * girth:.1f} cm "
                 f"round there – make it at least {100 * (girth + ROOM):.1f} cm"
             )
 

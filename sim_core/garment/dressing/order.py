@@ -84,6 +84,8 @@ def _folded(garment: Garment) -> list[tuple[_Panel, tuple[np.ndarray, np.ndarray
         if number == len(garment.panels):  # it is one half
             break
         faces = np.flatnonzero(garment.panel == number)
+        if not len(faces):  # of the other side alone
+            continue
         own, x = np.unique(garment.pattern_faces[faces]), sign * garment.pattern[:, 0]
         folded = _Panel(faces, x, Plies.of(float(x[own].min()), float(x[own].max()), panel.pleats))
         found.append((folded, (garment.weld[own], before)))

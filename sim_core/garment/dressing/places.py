@@ -88,8 +88,16 @@ class Places:
             behind = own[self.cut.vertices[own, 1] <= 0]
             behind = behind if len(behind) else own
             near = np.abs(self.cut.vertices[behind, 0]) - self.cut.vertices[behind, 1]
-            return int(self.sheet.number[behind[np.argmin(near)]])
-        return int(self.sheet.number[middle[np.argmax(self.cut.vertices[middle, 1])]])
+            return self._drawn(behind[np.argmin(near)])
+        return self._drawn(middle[np.argmax(self.cut.vertices[middle, 1])])
+
+    def _drawn(self, vertex: int) -> int:
+        """The vertex of the sheet that is one of the cut; of a panel that the second half alone has, its image."""
+        if self.cloth is not self.cut:
+            kept = self.layer.pattern.kept(self.cut)
+            vertex = vertex if kept[vertex] else vertex + len(self.cut.vertices)
+            vertex = int(kept[:vertex].sum())
+        return int(self.sheet.number[vertex])
 
     def _nearest(self, spot: Spot | str) -> list[int]:
         """The vertex of the sheet nearest to a place, of both sides where none is named."""
@@ -120,7 +128,7 @@ def belt_pairs(
 
     A belt longer than the line is as long as that. Raises SimCoreError where no cloth goes round there.
     """
-    own = _round(x, faces, centre)
+    own = np.unique(_cut_round(x, faces, centre))
     if not len(own):
         raise SimCoreError(
             f"no cloth goes round the wearer {centre[1]:.2f} m above the floor – move the belt"
@@ -137,14 +145,17 @@ def belt_pairs(
 
 
 def girth_there(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> float:
-    """How long [m] a string round the garment x (V, 3), faces (F, 3) is that is drawn at the height of `centre` (3,)
-    without squeezing it; 0 where it does not go round there."""
-    own = _round(x, faces, centre)
-    return hull_girth(x[own][:, [0, 2]]) if len(own) else 0.0
+    """How long [m] a string is that goes round a garment x (V, 3), faces (F, 3) at the height of `centre` (3,) and does
+    not squeeze it; 0 where it does not go round there."""
+    ends = x[_cut_round(x, faces, centre)][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2, 3)
+    above = ends[:, :, 1] > centre[1]
+    a, b = np.moveaxis(ends[above[:, 0] != above[:, 1]], 1, 0)
+    share = (centre[1] - a[:, 1:2]) / (b[:, 1:2] - a[:, 1:2])
+    return hull_girth((a + share * (b - a))[:, [0, 2]])
 
 
-def _round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Vertices (N,) next to the height of `centre` of the cloth that goes round it, without sleeves beside."""
+def _cut_round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """Faces (N, 3) at the height of `centre` of the cloth that goes round it, without sleeves beside."""
     above = x[faces, 1] > centre[1]
     cut = faces[above.any(1) & ~above.all(1)]
     number = np.arange(3 * len(cut)).reshape(-1, 3) // 3
@@ -157,4 +168,4 @@ def _round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:
         ahead = np.sort(direction[mine])
         if np.diff(ahead, append=ahead[0] + 2 * np.pi).max() < OPEN:
             own.append(cut[mine])
-    return np.unique(np.concatenate(own))
+    return np.concatenate(own)

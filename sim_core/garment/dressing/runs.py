@@ -150,15 +150,17 @@ class Runs:
 
     def _check_belts(self) -> None:
         """What is worn beneath does not give way: by a tighter belt cloth would be pressed through it and itself."""
-        for belt, key, centre in (told for course in self.courses for told in self._belts(course)):
-            for layer, worn in zip(self.wearing.outfit.layers, self.wearing.meshes(key), strict=False):
-                girth = girth_there(*worn, centre)
-                if belt.length < girth:
-                    raise SimCoreError(
-                        f"{self._key}.step: belt: {100 * belt.length:.1f} cm, {layer.name!r} beneath is "
-                        f"{100 * girth:.1f} cm round there – draw that in first by a belt of its own, or make this "
-                        "one longer"
-                    )
+        for course in self.courses:
+            off = 2 * np.pi * self.contact(course).clearance  # that much longer is what lies so far outside
+            for belt, key, centre in self._belts(course):
+                for layer, worn in zip(self.wearing.outfit.layers, self.wearing.garments(key), strict=False):
+                    girth = girth_there(*worn, centre) + off
+                    if belt.length < girth:
+                        raise SimCoreError(
+                            f"{self._belt(belt)}.length: {100 * belt.length:.1f} cm, round {layer.name!r} beneath it "
+                            f"is {100 * girth:.1f} cm there – draw that in by a belt of its own, which it wears when "
+                            "this one is drawn, or make this one longer"
+                        )
 
     def _lay_belts(self, course: Course, sheet: SewnSheet, x: np.ndarray) -> None:
         """Belts that join in this run go round the cloth as it lies at x (V, 3) [m]; they stay where they are then."""
@@ -168,12 +170,13 @@ class Runs:
             try:
                 self.belts[belt] = belt_pairs(x, sheet.sheet.faces, centre, belt.length, self.layer.edge)
             except SimCoreError as error:
-                raise SimCoreError(f"{self._key}.step: belt: {error}") from error
+                raise SimCoreError(f"{self._belt(belt)}: {error}") from error
 
-    @property
-    def _key(self) -> str:
-        """How errors name the layer."""
-        return self.wearing.outfit.key(self.number)
+    def _belt(self, belt: Belt) -> str:
+        """How errors name a belt."""
+        steps = enumerate(self.layer.program.steps, 1)
+        step = next(step.key or f"step.{number}" for number, step in steps if step.belt == belt)
+        return f"{self.wearing.outfit.key(self.number)}.{step}.belt"
 
     def _gap(self, x: np.ndarray) -> float:
         """Largest distance [m] of two pattern vertices at x (P, 3) that are one point of the closed garment."""

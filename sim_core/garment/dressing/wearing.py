@@ -59,7 +59,11 @@ class Wearing:
 
     def meshes(self, key: int) -> list[tuple[np.ndarray, np.ndarray]]:
         """Closed meshes of the garments worn beneath, in a pose."""
-        return [capped(trail.at(self.moves.shares[key]), trail.faces) for trail in self.trails]
+        return [capped(*garment) for garment in self.garments(key)]
+
+    def garments(self, key: int) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Positions (V, 3) [m] and faces of the garments worn beneath, in a pose."""
+        return [(trail.at(self.moves.shares[key]), trail.faces) for trail in self.trails]
 
     def ground(self, layer: Layer) -> Ground:
         """What the layer is placed on: everything in the first pose."""

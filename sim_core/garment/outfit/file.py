@@ -139,7 +139,7 @@ class _Reader:
             for k, step in enumerate(layer.program.steps, 1):
                 if step.belt is not None and step.belt.mark not in known:
                     raise self._wrong(
-                        f"layer.{number}.step.{k}.belt.mark",
+                        f"layer.{number}.{step.key or f'step.{k}'}.belt.mark",
                         f"no landmark {shown(step.belt.mark)} – landmarks: {', '.join(known) or 'none on a stand'}",
                     )
 
@@ -265,6 +265,7 @@ class _Reader:
             belt=None if table.belt is None else Belt(**table.belt.model_dump()),
             touch=Touch(**table.touch.model_dump()),
             label=table.label or table.do,
+            key=".".join(key.split(".")[-2:]),
         )
 
     def _file(self, key: str, name: str) -> Path:
@@ -293,7 +294,8 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
     welded, pinned = False, []
     sewn = any(seam.kind == "sewn" for seam in pattern.seams)
     for number, step in enumerate(steps, 1):
-        where = f"{key}.step.{number}.do"
+        told = f"{key}.{step.key or f'step.{number}'}"
+        where = f"{told}.do"
         if step.do == "sew" and welded:
             raise reader._wrong(where, "sew after weld – seams that are welded are one cloth; sew before")
         if step.do == "weld":
@@ -306,9 +308,7 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
             if not pinned:
                 raise reader._wrong(where, "nothing is pinned – leave it out")
             if any(spot not in pinned for spot in step.spots):
-                raise reader._wrong(
-                    f"{key}.step.{number}.at", "it is not pinned – pin it before, or leave it out"
-                )
+                raise reader._wrong(f"{told}.at", "it is not pinned – pin it before, or leave it out")
             pinned = [spot for spot in pinned if step.spots and spot not in step.spots]
         if step.do == "pin":
             pinned += step.spots

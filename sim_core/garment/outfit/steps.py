@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from sim_core.body.pose import Pose
@@ -55,7 +55,8 @@ class Step:
     close – `ties` are drawn to their length (none named: all), or `belt` is, pose – the wearer goes to `pose` (None:
     the outfit's), settle, rest – time passes, at most until eight frames in a row move less than `still` [m, p99].
     seconds; gravity [m/s2] from..to; damping [1/s]; friction on what lies beneath (None: the cloth's own); speed
-    [m/s] that nothing passes; touch: how it touches from here on; label: what the progress says.
+    [m/s] that nothing passes; touch: how it touches from here on; label: what the progress says; key: where a layer's
+    table says it, "step.3" or "then.1", for errors.
     """
 
     do: Do
@@ -71,6 +72,7 @@ class Step:
     pose: Pose | None = None
     touch: Touch = Touch()
     label: str = ""
+    key: str = field(default="", repr=False, compare=False)
 
     @property
     def timed(self) -> bool:

@@ -28,6 +28,10 @@ def unsided(name: str) -> str:
     return next((name.removesuffix(side) for side in SIDES if name.endswith(side)), name)
 
 
+def _no_pairs() -> np.ndarray:
+    return np.zeros((0, 2), np.int32)
+
+
 @dataclass(frozen=True)
 class Cloth:
     """All panels meshed. P pattern vertices, F faces.
@@ -36,7 +40,8 @@ class Cloth:
     panel (F,) and panel_of (P,) number the panels of `names`; joined (P,): vertices joined flat have one number,
     closed (P,): once all seams are sewn; pairs (K, 2): what `sewn` draws together; middle (M,): vertices on x = 0;
     paths: the vertices along each leg; fits: how each seam of two sides came out, of one half; creases (C, 2): edges
-    along the folds of pleats.
+    along the folds of pleats; flat, sewn (k, 2): pattern vertices that a seam brings together, of which `joined`,
+    `closed` and `pairs` are reckoned.
     """
 
     names: tuple[str, ...]
@@ -50,7 +55,9 @@ class Cloth:
     middle: np.ndarray
     paths: dict[str, np.ndarray]
     fits: tuple[SeamFit, ...] = ()
-    creases: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    creases: np.ndarray = field(default_factory=_no_pairs)
+    flat: np.ndarray = field(default_factory=_no_pairs)
+    sewn: np.ndarray = field(default_factory=_no_pairs)
 
     @staticmethod
     def of(mesh: PanelMesh, name: str = "cloth") -> Cloth:
@@ -74,6 +81,7 @@ class Cloth:
         count = len(self.vertices)
         flipped = self.faces[:, [0, 2, 1]] + count
         names = tuple(name + side for side in SIDES for name in self.names)
+        meeting = np.column_stack([self.middle, self.middle + count])
 
         def doubled(index: np.ndarray) -> np.ndarray:
             image = index + index.max() + 1
@@ -99,27 +107,31 @@ class Cloth:
             paths,
             self.fits,
             np.concatenate([self.creases, self.creases + count]).astype(np.int32),
+            np.concatenate([self.flat, self.flat + count, meeting]).astype(np.int32),
+            np.concatenate([self.sewn, self.sewn + count]).astype(np.int32),
         )
 
     def only(self, kept: np.ndarray) -> Cloth:
-        """Without the vertices that kept (P,) leaves out, which must be those of whole panels; a panel keeps its number
-        and name where it has lost all it had."""
+        """Without the vertices that kept (P,) leaves out, which must be those of whole panels, and without their seams;
+        a panel keeps its number and name where it has lost all it had."""
         new = np.cumsum(kept) - 1
-        joined = np.unique(self.joined[kept], return_inverse=True)
-        whole = np.isin(self.pairs, joined[0]).all(1)
+        flat, sewn, creases = (new[told[kept[told].all(1)]] for told in (self.flat, self.sewn, self.creases))
         faces = kept[self.faces[:, 0]]
+        joined, closed, pairs = _meeting(int(kept.sum()), flat, sewn)
         return replace(
             self,
             vertices=self.vertices[kept],
             faces=new[self.faces[faces]].astype(np.int32),
             panel=self.panel[faces],
             panel_of=self.panel_of[kept],
-            joined=joined[1].astype(np.int32),
-            closed=np.unique(self.closed[kept], return_inverse=True)[1].astype(np.int32),
-            pairs=np.searchsorted(joined[0], self.pairs[whole]).astype(np.int32),
+            joined=joined,
+            closed=closed,
+            pairs=pairs,
             middle=new[self.middle[kept[self.middle]]].astype(np.int32),
             paths={key: new[index] for key, index in self.paths.items() if kept[index].all()},
-            creases=new[self.creases[kept[self.creases].all(1)]].astype(np.int32),
+            creases=creases.astype(np.int32),
+            flat=flat.astype(np.int32),
+            sewn=sewn.astype(np.int32),
         )
 
     def _legs(self) -> Iterator[tuple[tuple[str, str], np.ndarray]]:
@@ -189,10 +201,8 @@ def _laid_out(
     panels: Sequence[Panel], meshes: list[PanelMesh], starts: np.ndarray, twins: dict[str, list[np.ndarray]]
 ) -> Cloth:
     """All meshes in one list of vertices, of which each begins at `starts`; twins: (k, 2) of them that are sewn."""
-    none, count = np.zeros((0, 2), np.int64), int(starts[-1])
-    flat, sewn = (np.concatenate([none, *twins[kind]]) for kind in ("joined", "sewn"))
-    joined = components(count, *flat.T)
-    pairs = np.unique(np.sort(joined[sewn], axis=1), axis=0)
+    flat, sewn = (np.concatenate([_no_pairs(), *twins[kind]]).astype(np.int32) for kind in ("joined", "sewn"))
+    joined, closed, pairs = _meeting(int(starts[-1]), flat, sewn)
     numbers = np.arange(len(panels), dtype=np.int32)
     parts = list(zip(panels, meshes, starts.tolist(), strict=False))
     return Cloth(
@@ -202,15 +212,25 @@ def _laid_out(
         panel=np.repeat(numbers, [len(mesh.faces) for mesh in meshes]),
         panel_of=np.repeat(numbers, np.diff(starts)),
         joined=joined,
-        closed=components(count, *np.concatenate([flat, sewn]).T),
-        pairs=pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32),
+        closed=closed,
+        pairs=pairs,
         middle=np.zeros(0, np.int32),
         paths={
             f"{panel.name}/{leg}": index + start
             for panel, mesh, start in parts
             for leg, index in enumerate(_legs(panel, mesh))
         },
+        flat=flat,
+        sewn=sewn,
     )
+
+
+def _meeting(count: int, flat: np.ndarray, sewn: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`joined`, `closed` and `pairs` of so many pattern vertices, of which flat, sewn (k, 2) are brought together."""
+    joined = components(count, *flat.T)
+    pairs = np.unique(np.sort(joined[sewn], axis=1), axis=0)
+    closed = components(count, *np.concatenate([flat, sewn]).T)
+    return joined, closed, pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32)
 
 
 def _named(panel: Panel) -> str:

@@ -53,14 +53,14 @@ def code_of_pattern(pattern: Pattern, tables: dict[str, Any] | None = None) -> G
     """
     panels = pattern.panels or (_plain_panel(pattern),)
     cuts = _cuts(panels, pattern.seams)
-    names = {
-        (p.name, turned): _name(p.name, panels, turned=turned) for turned in (False, True) for p in panels
-    }
-    halves = {
-        names[panel.name, turned]: _half(panel, cuts, turned=turned)
-        for turned in ((False, True) if pattern.mirror else (False,))
+    there = [
+        (panel, turned)
+        for turned, side in ((False, "left"), (True, "right"))
         for panel in panels
-    }
+        if (panel.is_of(side) if pattern.mirror else not turned)
+    ]
+    names = {(p.name, turned): _name(p, panels, turned=turned) for p, turned in there}
+    halves = {names[panel.name, turned]: _half(panel, cuts, turned=turned) for panel, turned in there}
     known = {panel.name: panel for panel in panels}
     stitches: list[Stitch] = []
     for seam in pattern.seams:
@@ -68,9 +68,10 @@ def code_of_pattern(pattern: Pattern, tables: dict[str, Any] | None = None) -> G
             sides = [(seam.a, names[seam.a.panel, False]), (seam.a, names[seam.a.panel, True])]
             stitches += _stitches(sides, known, halves)
             continue
-        for turned in (False, True) if pattern.mirror else (False,):
-            sides = [(way, names[way.panel, turned]) for way in (seam.a, seam.b)]
-            stitches += _stitches(sides, known, halves)
+        for turned in (False, True):
+            if all((way.panel, turned) in names for way in (seam.a, seam.b)):
+                sides = [(way, names[way.panel, turned]) for way in (seam.a, seam.b)]
+                stitches += _stitches(sides, known, halves)
     made = {name: half.panel for name, half in halves.items()}
     rest: dict[str, Any] = {"parameters": {}, "parameter_order": [], "properties": dict(PROPERTIES)}
     code = GarmentCode(made, tuple(stitches), CENTIMETRES, rest, {"panel_order": list(made)})
@@ -86,10 +87,12 @@ def _plain_panel(pattern: Pattern) -> Panel:
     return Panel(pattern.name, tuple(f"p{k}" for k in range(len(legs))), legs)
 
 
-def _name(name: str, panels: tuple[Panel, ...], *, turned: bool) -> str:
-    taken = {panel.name for panel in panels}
-    name = f"{name}_{OTHER}" if turned else name
-    while turned and name in taken:
+def _name(panel: Panel, panels: tuple[Panel, ...], *, turned: bool) -> str:
+    """What a panel, or its image, is called: a name that no other has."""
+    if not turned or panel.side:
+        return panel.name
+    taken, name = {panel.name for panel in panels}, f"{panel.name}_{OTHER}"
+    while name in taken:
         name += "_"
     return name
 

@@ -244,7 +244,7 @@ def _made(path: Path, read: _PatternFile) -> Pattern:
 def _first(error: ValidationError) -> str:
     """The first problem of a file in one line: key, what, value."""
     first = error.errors()[0]
-    key = ".".join(str(part) for part in first["loc"])
+    key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])
     if first["type"] == "extra_forbidden":
         known = ", ".join(_PatternFile.model_fields)
         return f"{key[:80]}: unknown key – remove it or correct its name (known: {known})"

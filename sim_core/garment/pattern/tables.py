@@ -143,9 +143,20 @@ def read_cut(
                 f"panel.{table.name}.side", "only a pattern with mirror = true has sides – leave it out"
             )
         made[table.name] = _panel(table, known, made)
+        _check_beside(made[table.name], made)
     stitched = tuple(_seam(k, table, made, mirrored) for k, table in enumerate(seams))
     _check_once(stitched, made)
     return tuple(made.values()), stitched, _ties(ties, known, made, mirrored)
+
+
+def _check_beside(panel: Panel, made: Mapping[str, Panel]) -> None:
+    """A band lies where the panel is that it is sewn to: on the one side alone that has that panel."""
+    side = made[panel.along.panel].side if panel.along is not None else ""
+    if panel.along is not None and side and panel.side != side:
+        raise CutProblem(
+            f"panel.{panel.name}.side",
+            f"it lies along {panel.along.panel!r}, which is cut for the {side} alone – write {side!r}",
+        )
 
 
 def read_measures(measures: Mapping[str, Measure]) -> dict[str, float]:
@@ -329,11 +340,15 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
 
 
 def _check_once(seams: tuple[Seam, ...], made: Mapping[str, Panel]) -> None:
-    seen: dict[tuple[str, int], tuple[int, int]] = {}
+    """In each half an edge is sewn once: what is cut for the left alone and what is for the right may share one."""
+    seen: dict[tuple[str, int, str], tuple[int, int]] = {}
     for number, seam in enumerate(seams):
-        for side, path in enumerate((seam.a, seam.b)):
-            if path is None:
-                continue
+        sides = [path for path in (seam.a, seam.b) if path is not None]
+        halves = [half for half in ("left", "right") if all(made[path.panel].is_of(half) for path in sides)]
+        for side, path in enumerate(sides):
             for leg in made[path.panel].path(path.start, path.end, ahead=path.ahead):
-                if seen.setdefault((path.panel, leg), (number, side)) != (number, side):
-                    raise CutProblem(f"seam.{number + 1}", f"{str(path)!r} is sewn already – one seam a side")
+                for half in halves:
+                    if seen.setdefault((path.panel, leg, half), (number, side)) != (number, side):
+                        raise CutProblem(
+                            f"seam.{number + 1}", f"{str(path)!r} is sewn already – one seam a side"
+                        )

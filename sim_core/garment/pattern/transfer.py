@@ -34,6 +34,8 @@ class Transfer:
         for number in range(len(coarse.names)):
             faces = coarse.faces[coarse.panel == number]
             own = np.flatnonzero(fine.panel_of == number)
+            if not len(own):  # a panel that the other side has alone
+                continue
             corner, point = coarse.vertices[faces], fine.vertices[own]
             _, near = KDTree(corner.mean(1)).query(point, k=min(NEAR, len(faces)))
             near = np.asarray(near).reshape(len(own), -1)

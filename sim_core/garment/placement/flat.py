@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Panel, Path, Pattern
 from sim_core.garment.pattern.panels import arc_length
 from sim_core.garment.placement.ground import Ground
@@ -51,7 +52,11 @@ class Flat:
         return laid(pattern, cloth, laying)[0]
 
     def whole(self, pattern: Pattern, cloth: Cloth, ground: Ground) -> np.ndarray:
-        """Positions (W, 3) [m] of the whole of a mirrored pattern, the outer front raised off the other."""
+        """Positions (W, 3) [m] of the whole of a mirrored pattern, the outer front raised off the other.
+
+        Raises SimCoreError where the inner front has panels that reach beyond the other side: only what lies outside
+        can go on round the back.
+        """
         laying = self._laying(ground)
         own, fall = laid(pattern, cloth, laying)
         both = np.stack([own, own * [-1.0, 1.0, 1.0]])
@@ -60,6 +65,12 @@ class Flat:
         outer = 0 if self.over == "left" else 1
         both[outer] += amount[:, None] * laying.normal(fall)
         if not pattern.alike:
+            inner = "right" if self.over == "left" else "left"
+            if np.isfinite(_sides(pattern, cloth, own, fall, inner)):
+                raise SimCoreError(
+                    f"over = {self.over!r}: a front of the {inner} reaches beyond the wearer's side, only an outer one "
+                    f"goes on round the back – lay it over the other (over = {inner!r}), or cut it narrower"
+                )
             across = np.array([1.0 if outer == 0 else -1.0, 1.0, 1.0])
             both[outer] = across * self._wound(pattern, cloth, laying, across * both[outer], fall)
         return both.reshape(-1, 3)[pattern.kept(cloth)]
@@ -69,9 +80,7 @@ class Flat:
     ) -> np.ndarray:
         """Positions (P, 3) [m] of the outer half, as if it were the left one: what lies beyond the sides in front is
         bent backwards and goes on behind."""
-        single = np.array([panel.side != "" for panel in pattern.panels])[cloth.panel_of]
-        below = np.abs(fall) >= fall[single].min()
-        turn = float(np.abs(own[below & ~single, 0]).max()) + BEYOND
+        turn = _sides(pattern, cloth, own, fall, self.over)
         beyond = -turn - own[:, 0]
         moved = (fall > 0) & (beyond > 0)
         if not moved.any():
@@ -140,6 +149,22 @@ class Laying:
         flat = self.front - self.fold - self.bend
         angle = np.clip((fall - flat) / self.bend, 0, np.pi / 2)
         return np.stack([np.zeros(len(fall)), np.cos(angle), np.sin(angle)], axis=1)
+
+
+def _sides(pattern: Pattern, cloth: Cloth, own: np.ndarray, fall: np.ndarray, half: str) -> float:
+    """How far [m] from the middle a half, laid at own (P, 3) [m] as the left one is, turns round the sides: beyond all
+    that both halves have at the height of its own panels that reach further, and below; inf where none does."""
+    both = np.array([not panel.side for panel in pattern.panels])[cloth.panel_of]
+
+    def side(low: float) -> float:
+        return float(np.abs(own[both & (np.abs(fall) >= low), 0]).max(initial=0.0)) + BEYOND
+
+    reaching = []
+    for number, panel in enumerate(pattern.panels):
+        mine = (cloth.panel_of == number) & (fall > 0)
+        if panel.side == half and mine.any() and -own[mine, 0].min() > side(float(fall[mine].min())):
+            reaching.append(float(fall[mine].min()))
+    return side(min(reaching)) if reaching else np.inf
 
 
 def _spiral(

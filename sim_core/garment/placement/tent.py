@@ -137,13 +137,21 @@ class Folds:
         panels = pattern.panels * (2 if pattern.mirror else 1)
         x, low = cloth.vertices[:, 0], float(cloth.vertices[:, 0].min())
         plies, highest = [], []
-        for number, panel in enumerate(panels):
-            own = x[cloth.panel_of == number]
+        there = np.unique(cloth.panel_of)  # without what one side alone has, in the other
+        for number in there:
+            panel, own = panels[number], x[cloth.panel_of == number]
             plies.append(Plies.of(float(own.min()), float(own.max()), panel.pleats))
             angles = [np.sin(min(STANDING * pleat.crease, 1.0)) * pleat.depth for pleat in panel.pleats]
             highest.append(float(min(angles, default=0.0)))
         ends = np.array([(folded.places.min(), folded.places.max()) for folded in plies]) - low
-        return Folds(x, cloth.panel_of, tuple(plies), tuple(highest), ends.mean(1), float(ends[:, 1].max()))
+        return Folds(
+            x,
+            np.searchsorted(there, cloth.panel_of),
+            tuple(plies),
+            tuple(highest),
+            ends.mean(1),
+            float(ends[:, 1].max()),
+        )
 
     def round(self, tight: float, ring: _Ring, gap: float) -> tuple[np.ndarray, np.ndarray]:
         """Where (P,) [m] vertices lie along a ring, of cloth laid to go round one of `tight` [m], and how high (P,) [m]
