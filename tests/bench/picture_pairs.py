@@ -147,8 +147,9 @@ def _pictures(content: Path, work: Path, checkout: Path | None) -> dict[str, Ima
     """View -> its picture in the hall of `content`; checkout: the code of another hall than this one."""
     work.mkdir(parents=True)
     env = None if checkout is None else {"PYTHONPATH": str(checkout.resolve())}
+    program = (sys.executable, "-P", "-m", "hall_app")  # not of the folder this is run in
     found: dict[str, Image.Image] = {}
-    with running_hall(content, work, env=env) as served, open_browser() as browser:
+    with running_hall(content, work, env=env, program=program) as served, open_browser() as browser:
         page = browser.new_context(viewport=DESK).new_page()
         enter(page, f"{served.url}/?lang=zh", quality="high")
         page.wait_for_timeout(8000)  # what is far comes while one walks
