@@ -41,10 +41,10 @@ class Desk:
         return key
 
     def table(self, key: str) -> dict[str, Any]:
-        """Its exhibit.toml as it is to be, empty where it is no TOML."""
+        """Its exhibit.toml as it is to be, empty where it cannot be read."""
         try:
-            return tomllib.loads(self.drafts.text(key, TOML))
-        except tomllib.TOMLDecodeError:
+            return _table(self.drafts.text(key, TOML))
+        except PeopleError:
             return {}
 
     def title(self, key: str, lang: str) -> str:
@@ -88,10 +88,7 @@ class Desk:
         """A whole text file into the draft. Raises PeopleError, also for an exhibit.toml that is no TOML."""
         data = self.drafts.encoded(key, name, text)
         if name == TOML:
-            try:
-                tomllib.loads(data.decode("utf-8-sig"))
-            except tomllib.TOMLDecodeError as error:
-                raise PeopleError("content-file", why=f"{TOML}: {error}") from None
+            _table(data.decode("utf-8-sig"))
         self._write(asking, key, {name: data}, {} if tag is None else {name: tag})
 
     def _write(
@@ -116,9 +113,21 @@ class Desk:
         before = self.table(key)
         if toml is None or not before or asking.person.may("place"):
             return
-        if tomllib.loads(toml.decode("utf-8-sig")).get("place") != before.get("place"):
+        if _table(toml.decode("utf-8-sig")).get("place") != before.get("place"):
             self.people.refuse(asking.person.id, "place", asking.path)
             raise PeopleError("not-allowed")
+
+
+def _table(text: str) -> dict[str, Any]:
+    """An exhibit.toml. Raises PeopleError for what is no TOML, and for what nobody can read even so."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise PeopleError("content-file", why=f"{TOML}: {error}") from None
+    except (ValueError, ArithmeticError, RecursionError) as error:
+        # A number of thousands of digits, thousands of brackets: tomllib gives up in its own ways.
+        why = f"{TOML}: cannot be read ({type(error).__name__}) – shorten its numbers and lists"
+        raise PeopleError("content-file", why=why) from None
 
 
 def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:

@@ -236,7 +236,7 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
     for number, one in enumerate(media if isinstance(media, list) else []):
         if not isinstance(one, dict):
             continue
-        names = [one["file"]] if one.get("file") else list(one.get("files") or ())
+        names = _named(one)
         at = f"/office/collection/{key}"
         keys = media_keys(number) if one.get("kind") != "picture" else media_keys(number)[:2]
         words = form(
@@ -250,15 +250,15 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
                 "remove",
                 f"{at}/remove",
                 word("移除", "Remove"),
-                about=str(names[0]),
+                about=names[0],
                 hidden={"file": names[0]},
             )
             if own and len(names) == 1
             else ""
         )
         told = one.get("caption") or one.get("alt")
-        words_of = str(told.get(asking.lang, "")) if isinstance(told, dict) else ""
-        named = f'<code class="quiet">{escape(", ".join(map(str, names)))}</code>'
+        words_of = _word_of(told, asking.lang)
+        named = f'<code class="quiet">{escape(", ".join(names))}</code>'
         title = f"<b>{escape(words_of or str(number + 1))}</b> · {named}"
         parts.append(
             f"<li>{shown_medium(asking, key, one, names)}"
@@ -272,6 +272,18 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
     parts += [f'<li class="drawn">{drawn}</li>'] if drawn else []
     listed = f'<ul class="media">{"".join(parts)}</ul>' if parts else ""
     return part("media", title, f'{listed}<div class="desk">{_upload_form(asking, key)}</div>')
+
+
+def _named(one: Mapping[str, Any]) -> list[str]:
+    """The files of a medium as exhibit.toml has it; what is no name there is none."""
+    given = one["file"] if one.get("file") else one.get("files")
+    listed = given if isinstance(given, list) and not one.get("file") else [given]
+    return [name for name in listed if isinstance(name, str)]
+
+
+def _word_of(pair: Any, lang: str) -> str:
+    text = pair.get(lang) if isinstance(pair, Mapping) else None
+    return text if isinstance(text, str) else ""
 
 
 def drawn_model(asking: Asking, key: str, name: str, told: str = "") -> str:
@@ -301,16 +313,15 @@ def drawn_model(asking: Asking, key: str, name: str, told: str = "") -> str:
 <figcaption><code>{escape(name)}</code>{told}</figcaption></figure>'''
 
 
-def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[Any]) -> str:
+def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[str]) -> str:
     """A medium as HTML, from the draft's own files."""
-    if not names or not all(isinstance(name, str) for name in names):
+    if not names:
         return '<span class="blank"></span>'
-    alt = one.get("alt")
-    words = escape(str(alt.get(asking.lang, ""))) if isinstance(alt, dict) else ""
+    words = escape(_word_of(one.get("alt"), asking.lang))
     if one.get("kind") == "picture":
         return f'<img src="{file_address(asking, key, names[0])}" alt="{words}" loading="lazy">'
     sources = "".join(
-        f'<source src="{file_address(asking, key, name)}" type="{media_type(name, one.get("kind", ""))}">'
+        f'<source src="{file_address(asking, key, name)}" type="{media_type(name, str(one.get("kind", "")))}">'
         for name in names
     )
     label = words or escape(names[0])
