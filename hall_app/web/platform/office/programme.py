@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, replace
-from datetime import date, datetime, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 from html import escape
 from typing import Any
 
 from hall_app.house.people import PeopleError
 from hall_app.house.people.records import Booking, Occasion, Plan
-from hall_app.web.platform.counter import Asking, Counter, Field, Shown, button, form, told_day, told_time
+from hall_app.web.platform.counter import (
+    Asking,
+    Counter,
+    Field,
+    Shown,
+    button,
+    form,
+    leaf_asked,
+    leaf_ways,
+    told_day,
+    told_time,
+)
 from hall_app.web.platform.office.deeds import Deed, Reading, number_in
 from hall_app.web.platform.office.table import office_page, rows
 
 __all__ = ["programme_deeds", "programme_readings"]
 
 MOST_SLOTS = 60  # planned at once
+LISTED = 200  # occasions on a page of the list
 _PLAN = {
     "title_zh": "its title in Chinese",
     "title_en": "its title in English",
@@ -33,10 +46,11 @@ _PLAN = {
 
 def programme_readings(counter: Counter) -> tuple[Reading, ...]:
     rooms = _Rooms(counter)
+    listed = {"past": "1: those over or called off, the last first", "page": f"from 1, of {LISTED} each"}
     return (
-        Reading("events", "events", rooms.all, rooms.all_page),
+        Reading("events", "events", rooms.all, rooms.all_page, listed),
         Reading("events/{key}", "reservations", rooms.one, rooms.one_page),
-        Reading("day", "reservations", rooms.day, rooms.day_page),
+        Reading("day", "reservations", rooms.day, rooms.day_page, {"day": "as of ISO 8601, today for none"}),
     )
 
 
@@ -62,8 +76,7 @@ class _Rooms:
         self._people = counter.people
 
     def all(self, asking: Asking) -> list[dict[str, Any]]:
-        past = bool(asking.query.get("past"))
-        return [_told(one) for one in self._people.occasions.to_come(past=past)]
+        return [_told(one) for one in self._listed(asking)[0]]
 
     def one(self, asking: Asking) -> dict[str, Any]:
         one = self._people.occasions.of(asking.names["key"])
@@ -120,49 +133,20 @@ class _Rooms:
         return {"id": number, "cancelled": True}
 
     def all_page(self, asking: Asking) -> Shown:
-        word, past = asking.word, bool(asking.query.get("past"))
-        lines = [
-            (
-                f'<a href="{asking.address(f"/office/events/{one.id}")}">{escape(one.told("title", asking.lang))}</a>',
-                _kind(asking, one.plan.kind),
-                told_time(one.plan.begins, asking.lang),
-                f"{one.taken} / {one.plan.places}",
-                str(one.waiting) + (f" · {word('已取消', 'off')}" if one.cancelled else ""),
-            )
-            for one in self._people.occasions.to_come(past=past)
-        ]
-        heads = (
-            word("标题", "Title"),
-            word("类别", "Kind"),
-            word("开始", "Begins"),
-            word("已约 / 名额", "Booked / places"),
-            word("候补", "Waiting"),
-        )
+        word, past = asking.word, "1" if asking.query.get("past") else ""
+        found, more = self._listed(asking)
         title = word("活动与参观", "Activities and visits")
         other = asking.address("/office/events", past="" if past else "1")
         others = word("未来的", "To come") if past else word("过去的", "Past")
         ways = f"""<p class="doors"><a href="{other}">{others}</a>
 <a href="{asking.address("/office/day")}">{word("今日签到单", "Sheet of the day")}</a></p>"""
         listed = (
-            rows(title, heads, lines) if lines else f"<p>{word('还没有安排。', 'Nothing is planned.')}</p>"
+            _table(asking, title, found) if found else f"<p>{word('还没有安排。', 'Nothing is planned.')}</p>"
         )
-        hall = word("展厅", "In the hall")
-        new = form(
-            asking, "event", "/office/events", _fields(asking, None), word("发布活动", "Publish the activity")
-        )
-        slot = _fields(asking, None, title=("讲解参观", "Guided visit"), place=hall)
-        length = Field(
-            "minutes", word("每段分钟数", "Minutes a slot"), "number", value="60", given={"min": "5"}
-        )
-        visits = form(
-            asking, "visits", "/office/visits", (*slot, length), word("发布时段", "Publish the hours")
-        )
-        told = word("从开始到结束，分成等长的时段。", "From beginning to end, in slots of one length.")
-        inside = f"""{ways}{listed}<div class="centre">
-<section aria-labelledby="new"><h2 class="small" id="new">{word("新活动", "A new activity")}</h2>{new}</section>
-<section aria-labelledby="hours"><h2 class="small" id="hours">{word("参观时段", "Hours for visits")}</h2>
-<p class="quiet">{told}</p>{visits}</section></div>"""
-        return office_page(asking, title, inside, path="events")
+        pages = leaf_ways(asking, "/office/events", leaf_asked(asking), more=more, past=past)
+        query = {name: value for name in ("past", "page") if (value := asking.query.get(name, ""))}
+        inside = f"{ways}{listed}{pages}{_new(asking)}"
+        return office_page(asking, title, inside, path="events", query=query)
 
     def one_page(self, asking: Asking) -> Shown:
         word, one = asking.word, self._people.occasions.of(asking.names["key"])
@@ -254,11 +238,54 @@ class _Rooms:
         }
         return kept | {"waiting": made.place, "arrived": arrived}
 
-    def _on(self, day: date) -> list[Occasion]:
-        occasions = self._people.occasions
-        found = (*occasions.to_come(), *occasions.to_come(past=True))
-        mine = [one for one in found if one.plan.begins.astimezone().date() == day and not one.cancelled]
-        return sorted(mine, key=lambda one: one.plan.begins)
+    def _on(self, day: date) -> tuple[Occasion, ...]:
+        """What begins on that day of the house's own clock."""
+        first, end = (datetime.combine(one, time()).astimezone() for one in (day, day + timedelta(days=1)))
+        return self._people.occasions.between(first, end)
+
+    def _listed(self, asking: Asking) -> tuple[tuple[Occasion, ...], bool]:
+        """The occasions of the page asked for, and whether there are more."""
+        past, start = bool(asking.query.get("past")), (leaf_asked(asking) - 1) * LISTED
+        found = self._people.occasions.to_come(past=past, start=start, most=LISTED + 1)
+        return found[:LISTED], len(found) > LISTED
+
+
+def _table(asking: Asking, title: str, found: Iterable[Occasion]) -> str:
+    word = asking.word
+    heads = (
+        word("标题", "Title"),
+        word("类别", "Kind"),
+        word("开始", "Begins"),
+        word("已约 / 名额", "Booked / places"),
+        word("候补", "Waiting"),
+    )
+    lines = (
+        (
+            f'<a href="{asking.address(f"/office/events/{one.id}")}">{escape(one.told("title", asking.lang))}</a>',
+            _kind(asking, one.plan.kind),
+            told_time(one.plan.begins, asking.lang),
+            f"{one.taken} / {one.plan.places}",
+            str(one.waiting) + (f" · {word('已取消', 'off')}" if one.cancelled else ""),
+        )
+        for one in found
+    )
+    return rows(title, heads, lines)
+
+
+def _new(asking: Asking) -> str:
+    """The forms of a new activity and of hours for visits."""
+    word = asking.word
+    new = form(
+        asking, "event", "/office/events", _fields(asking, None), word("发布活动", "Publish the activity")
+    )
+    slot = _fields(asking, None, title=("讲解参观", "Guided visit"), place=word("展厅", "In the hall"))
+    length = Field("minutes", word("每段分钟数", "Minutes a slot"), "number", value="60", given={"min": "5"})
+    visits = form(asking, "visits", "/office/visits", (*slot, length), word("发布时段", "Publish the hours"))
+    told = word("从开始到结束，分成等长的时段。", "From beginning to end, in slots of one length.")
+    return f"""<div class="centre">
+<section aria-labelledby="new"><h2 class="small" id="new">{word("新活动", "A new activity")}</h2>{new}</section>
+<section aria-labelledby="hours"><h2 class="small" id="hours">{word("参观时段", "Hours for visits")}</h2>
+<p class="quiet">{told}</p>{visits}</section></div>"""
 
 
 def _kind(asking: Asking, kind: str) -> str:
@@ -286,7 +313,7 @@ def _plan(asking: Asking) -> Plan:
     try:
         # What is typed is the house's own clock; a program may name its offset.
         begins, ends = (
-            datetime.fromisoformat(given.get(name, "")).astimezone() for name in ("begins", "ends")
+            datetime.fromisoformat(given.get(name, "")).astimezone(UTC) for name in ("begins", "ends")
         )
     except (ValueError, OverflowError):
         raise PeopleError("occasion-times") from None
