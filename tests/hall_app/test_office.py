@@ -9,6 +9,7 @@ from datetime import UTC, datetime, timedelta
 from html import escape
 
 import pytest
+from content_house import EXHIBIT
 from form_visitor import Visitor
 from office_clerk import PASSWORD, clerk
 from open_counter import ASKED, SAID, answered
@@ -86,6 +87,14 @@ KINDS = {
     "people": ["?q=example.org"],
     "audit": ["?before=9"],
 }
+# What a deed takes beside its act, by what it would do to the chest that a curator has placed in a draft.
+BESIDE = {
+    "place": {
+        "collection/chest/fields": {"place.x": "0.5"},
+        "collection/chest/text": {"file": "exhibit.toml", "text": EXHIBIT.replace("x = 0.0", "x = 0.5")},
+        "collection/chest/drop": {},
+    },
+}
 MAY = {
     Role.EDITOR: {"draft", "preview"},
     Role.CURATOR: {
@@ -146,6 +155,33 @@ def test_what_a_role_may_not_is_refused_and_written_down(counter, people, role):
     open_to = {path.split("/")[0] for act in MAY[role] for path in READ.get(act, ())}
     for part in {path.split("/")[0] for paths in READ.values() for path in paths} - open_to:
         assert f'href="/office/{part}?' not in first, "nobody is shown what he may not"
+
+
+def test_what_a_deed_takes_beside_its_act_is_refused_and_written_down(counter, people):
+    editor, curator = clerk(counter, people, Role.EDITOR), clerk(counter, people, Role.CURATOR)
+    curator.told("collection/chest/place", {"place.x": "1.5"})
+    placed = curator.told("collection/chest")
+    for act, table in BESIDE.items():
+        assert act not in MAY[Role.EDITOR]
+        for path, given in table.items():
+            for door in ("api/office", "office"):
+                before = people.journal.entries(most=1)[0].id
+                fields = given | {"seen": placed["mark"]}
+                if door == "api/office":
+                    answer = editor.api(path, fields)
+                else:
+                    seal = editor.get("/office").form("/office/sign-out")["seal"]
+                    answer = editor.post(f"/office/{path}", fields | {"seal": seal})
+                assert answer.status == 403, (door, path)
+                (entry,) = [entry for entry in people.journal.entries(most=5) if entry.id > before]
+                assert (entry.who, entry.act, entry.subject, entry.refused) == (
+                    editor.person,
+                    act,
+                    f"/{door}/{path}",
+                    True,
+                )
+    assert curator.told("collection/chest")["draft"] == placed["draft"]
+    curator.drop("chest")
 
 
 def test_the_table_holds_every_address_of_the_office(counter):

@@ -346,7 +346,7 @@ def test_the_plan_names_what_stands_there_in_the_language_of_the_page(counter, c
     curator.told("collection", {"id": key, "title.zh": "另一件", "title.en": "Another"})
     for lang, title in (("zh", "箱"), ("en", "Chest")):
         assert f"<title>{title}</title>" in curator.get(f"/office/collection/{key}/place?lang={lang}").text
-    curator.told(f"collection/{key}/drop", {})
+    curator.drop(key)
 
 
 def test_an_editor_drafts_and_does_not_publish(counter, chest):
@@ -355,8 +355,43 @@ def test_an_editor_drafts_and_does_not_publish(counter, chest):
     page = one.get(f"/office/collection/{chest.name}?lang=en").text
     assert "/publish" not in page
     assert "/preview" in page
-    one.told(f"collection/{chest.name}/drop", {})
+    one.drop(chest.name)
     assert one.told(f"collection/{chest.name}")["draft"] is None
+
+
+def test_a_draft_is_dropped_as_it_was_seen(counter, curator, chest):
+    at, editor = f"collection/{chest.name}", clerk(counter, counter.people, Role.EDITOR)
+    curator.told(f"{at}/fields", {"title.en": "Seen"})
+    page, mark = editor.get(f"/office/{at}?lang=en"), curator.told(at)["mark"]
+    curator.told(f"{at}/fields", {"title.en": "Written since"})
+    for given in ({}, {"seen": ""}, {"seen": mark}):
+        assert editor.api(f"{at}/drop", given).status == 409
+    refused = editor.send(page, f"/office/{at}/drop")
+    assert refused.status == 409
+    assert "publish or drop it then" in refused.text
+    assert 'value="Written since"' in refused.text
+    assert curator.told(at)["draft"] is not None
+    assert editor.send(refused, f"/office/{at}/drop").status == 200
+    assert curator.told(at)["draft"] is None
+
+
+def test_an_editor_drops_no_placing_of_a_curator(counter, curator, chest):
+    editor, new = clerk(counter, counter.people, Role.EDITOR), f"{chest.name}-2"
+    editor.told("collection", {"id": new, "title.zh": "新", "title.en": "New"})
+    for key in (chest.name, new):
+        at = f"collection/{key}"
+        editor.told(f"{at}/fields", {"title.en": "Drafted"})
+        assert f"/office/{at}/drop" in editor.get(f"/office/{at}").text
+        curator.told(f"{at}/place", {"place.x": "1.5", "place.z": "2.5"})
+        mark, before = curator.told(at)["mark"], counter.people.journal.entries(most=1)[0].id
+        assert f"/office/{at}/drop" not in editor.get(f"/office/{at}").text, "nobody is shown what he may not"
+        assert editor.api(f"{at}/drop", {"seen": mark}).status == 403
+        (entry,) = [one for one in counter.people.journal.entries(most=5) if one.id > before]
+        assert (entry.who, entry.act, entry.refused) == (editor.person, "place", True)
+        assert curator.told(at)["draft"] is not None
+        curator.drop(key)
+    editor.told("collection", {"id": new, "title.zh": "新", "title.en": "New"})
+    editor.drop(new)
 
 
 def test_an_editor_does_not_move_what_stands_in_the_hall(counter, chest):

@@ -172,11 +172,20 @@ class Drafts:
                 del files[name], base[name]
             self._write(replace(draft, base=base, files=files, by=who, at=now().isoformat()))
 
+    def see(self, exhibit: str, seen: str | None) -> Draft:
+        """The draft. seen: its mark when it was looked at; None: nobody looked. Raises PeopleError where there is none,
+        or another by now."""
+        draft = self.of(exhibit)
+        if draft is None:
+            raise PeopleError("no-draft")
+        if seen not in (None, self.mark(exhibit)):
+            raise PeopleError("draft-changed")
+        return draft
+
     def drop(self, exhibit: str) -> None:
         """Forget the draft. Raises PeopleError."""
         with self.lock:
-            if self.of(exhibit) is None:
-                raise PeopleError("no-draft")
+            self.see(exhibit, None)
             (self._folder / f"{exhibit}.json").unlink()
 
     def changes(self, exhibit: str) -> Changed:

@@ -171,8 +171,8 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} was changed again since, so this cannot be undone: undo the newer change first.",
     ),
     "draft-changed": (
-        "草稿在您查看之后又被改动。下面是现在的草稿，请重新查看后再发布。",
-        "The draft was changed since you looked at it. This is how it is now: look again, and publish then.",
+        "草稿在您查看之后又被改动。下面是现在的草稿，请重新查看后再发布或放弃。",
+        "The draft was changed since you looked at it. This is how it is now: look again, and publish or drop it then.",
     ),
     "no-draft": (
         "这件展品没有草稿，可能已经发布或放弃。",

@@ -75,7 +75,7 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         Deed(f"{_ONE}/text", "draft", exhibits.save_text, _ONE, exhibits.text_page, takes=_TEXT, fields=text),
         Deed(f"{_ONE}/upload", "draft", uploads.bring, _ONE, uploads.page, takes=_FILES, fields=upload),
         Deed(f"{_ONE}/remove", "draft", uploads.remove, _ONE, exhibits.page, fields={"file": "its name"}),
-        Deed(f"{_ONE}/drop", "draft", exhibits.drop, "collection", exhibits.page),
+        Deed(f"{_ONE}/drop", "draft", exhibits.drop, "collection", exhibits.page, fields=seen),
         Deed(
             f"{_ONE}/place", "place", places.put, f"{_ONE}/place", places.page, fields=place | {"tag": _TAG}
         ),

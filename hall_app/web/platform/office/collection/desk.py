@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable, Mapping
 from html import escape
-from typing import Any
+from typing import Any, NoReturn
 
 from hall_app.content.files import TEXTS
 from hall_app.content.problems import Problem
@@ -108,14 +108,45 @@ class Desk:
         except OSError as error:
             raise PeopleError("content-write", why=error.strerror or str(error)) from error
 
+    def drop(self, asking: Asking, key: str, seen: str) -> None:
+        """Forget the draft. seen: its mark as the page showed it.
+
+        Raises PeopleError where it is another by now, and where it moves the exhibit and is dropped by who may not place
+        it: that would undo a curator's placing.
+        """
+        with self.drafts.lock:
+            self.drafts.see(key, seen)
+            if self.moved(key) and not asking.person.may("place"):
+                self._refuse_place(asking)
+            self.people.note(asking.person.id, "draft", key)
+            self.drafts.drop(key)
+        self.publication.tidy()
+
+    def moved(self, key: str) -> bool:
+        """Whether its draft has it elsewhere than the hall or, where the hall has none, than where it began."""
+        hall = self.drafts.hall_text(key, TOML)
+        try:
+            before = _table(hall).get("place") if hall else self.first_place()
+        except PeopleError:
+            before = None
+        return self.drafts.of(key) is not None and self.table(key).get("place") != before
+
+    def first_place(self) -> dict[str, float]:
+        """Where a new exhibit stands until it is placed."""
+        start = self.house.content.hall.start
+        return {"x": round(start.x + 1.5, 4), "z": round(start.z, 4), "facing": 0.0}
+
+    def _refuse_place(self, asking: Asking) -> NoReturn:
+        self.people.refuse(asking.person.id, "place", asking.path)
+        raise PeopleError("not-allowed")
+
     def _check_place(self, asking: Asking, key: str, toml: bytes | None) -> None:
         """Raises PeopleError, and writes it down, where someone moves an exhibit who may not."""
         before = self.table(key)
         if toml is None or not before or asking.person.may("place"):
             return
         if _table(toml.decode("utf-8-sig")).get("place") != before.get("place"):
-            self.people.refuse(asking.person.id, "place", asking.path)
-            raise PeopleError("not-allowed")
+            self._refuse_place(asking)
 
 
 def _table(text: str) -> dict[str, Any]:

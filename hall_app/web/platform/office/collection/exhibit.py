@@ -80,9 +80,7 @@ class Exhibits:
 
     def drop(self, asking: Asking) -> dict[str, Any]:
         key = self._desk.key(asking)
-        self._desk.people.note(asking.person.id, "draft", key)
-        self._desk.drafts.drop(key)
-        self._desk.publication.tidy()
+        self._desk.drop(asking, key, asking.form.get("seen", ""))
         return {"id": key}
 
     def _keys(self, table: dict[str, Any]) -> tuple[Key, ...]:
@@ -164,7 +162,9 @@ class Exhibits:
             for name in stale
             if name in TEXT_FILES
         )
-        deeds = button(asking, "drop", f"{at}/drop", word("放弃草稿", "Drop the draft"), hidden={})
+        deeds, seen = "", {"seen": desk.drafts.mark(key)}
+        if asking.person.may("place") or not desk.moved(key):
+            deeds = button(asking, "drop", f"{at}/drop", word("放弃草稿", "Drop the draft"), hidden=seen)
         if asking.person.may("publish"):
             deeds = publish_form(desk, asking, key) + deeds
         told = word("草稿，尚未在展厅中显示：", "A draft, not in the hall yet:")
