@@ -111,8 +111,8 @@ class Desk:
     def drop(self, asking: Asking, key: str, seen: str) -> None:
         """Forget the draft. seen: its mark as the page showed it.
 
-        Raises PeopleError where it is another by now, and where it moves the exhibit and is dropped by who may not place
-        it: that would undo a curator's placing.
+        Raises PeopleError where it is another by now, and where it moves the exhibit and who drops it may not place it:
+        a curator's placing would be undone.
         """
         with self.drafts.lock:
             self.drafts.see(key, seen)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import posixpath
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from hall_app.content.files import BAKED, replace_file, whole_digest
+from hall_app.content.files import BAKED, TEXTS, replace_file, whole_digest
 from hall_app.content.views.scene import media_type
 from hall_app.house.drafts import LARGEST, TEXT_FILES, USES, Taken, beside, portrait, shape, take_in
 from hall_app.house.people import PeopleError
@@ -40,10 +40,10 @@ class Uploads:
     def bring(self, asking: Asking) -> dict[str, Any]:
         """Into the draft, and named in exhibit.toml for its use."""
         desk, key, use = self._desk, self._desk.key(asking), asking.form.get("use", "picture")
-        brought = [one for one in asking.files if one.name or one.size]
-        if not brought or use not in USES:
+        came = [one for one in asking.files if one.name or one.size]
+        if not came or use not in USES:
             raise PeopleError("no-upload")
-        taken = [take_in(one.name, one.file, one.size, use) for one in brought]
+        taken = [take_in(one.name, one.file, one.size, use) for one in came]
         with desk.drafts.lock:
             names = desk.drafts.files(key)
             table = desk.table(key)
@@ -65,8 +65,29 @@ class Uploads:
                     count += 1
                 else:
                     changes += _as_model(table, use, name)
+            if use not in _MEDIA:
+                files |= dict.fromkeys(self._replaced(key, table, use, names))
             desk.change(asking, key, changes, files=files)
-        return {"id": key, "files": {name: one.told for name, one in zip(files, taken, strict=True)}}
+        brought = (name for name, data in files.items() if data is not None)
+        return {"id": key, "files": {name: one.told for name, one in zip(brought, taken, strict=True)}}
+
+    def _replaced(self, key: str, table: Mapping[str, Any], use: str, names: Mapping[str, str]) -> list[str]:
+        """Files it was made of that nothing names once another has their place: the check would refuse them."""
+        models, scan = table.get("models"), table.get("scan")
+        models = models if isinstance(models, Mapping) else {}
+        gone = [scan, *(models.values() if use == "scan" else [models.get(use)])]
+        kept = {part: value for part, value in table.items() if part not in ("models", "scan")}
+        if use != "scan":
+            kept["models"] = {part: value for part, value in models.items() if part != use}
+        drafts, named = self._desk.drafts, set(_texts_in(kept))
+        texts = [drafts.text(key, name) for name in TEXTS.values()]
+        return [
+            name
+            for name in gone
+            if isinstance(name, str)
+            and name in names.keys() - named
+            and not any(name in text for text in texts)
+        ]
 
     def remove(self, asking: Asking) -> dict[str, Any]:
         """A file out of the draft, and the medium that shows it."""
@@ -171,6 +192,15 @@ def _as_model(table: Mapping[str, Any], use: str, name: str) -> list[Change]:
         return [Change((one,), None, None) for one in gone] + [Change(("scan",), None, name)]
     gone = [one for one in ("outfit", "scan", "scanned", "show") if one in table]
     return [Change((one,), None, None) for one in gone] + [Change(("models", use), None, name)]
+
+
+def _texts_in(value: Any) -> Iterator[str]:
+    """All texts of a table, however deep."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | list):
+        for one in value.values() if isinstance(value, Mapping) else value:
+            yield from _texts_in(one)
 
 
 def file_address(asking: Asking, key: str, name: str) -> str:
