@@ -111,7 +111,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         queue.stopped()
         event_loop.run(queue.want(wanted))
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
-        assert one.api("bakes/nothing/stop", {}).status == 400
+        assert one.api("bakes/nothing/stop", {}).status == 404
         page = one.get("/office/bakes")
         assert "展厅灯光" in page.text
         one.send(page, f"/office/bakes/{quote(ROOM)}/stop")

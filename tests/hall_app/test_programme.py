@@ -95,6 +95,19 @@ def test_what_has_begun_or_is_off_offers_nothing_to_book(counter, planned):
             assert "A booking needs an account" not in page
 
 
+def test_what_is_not_there_is_not_booked_or_cancelled(counter, planned):
+    visitor, _ = member(counter)
+    seal = visitor.get("/me").form("form-profile")["seal"]
+    for act in ("book", "cancel"):
+        told = visitor.post(f"/activities/nothing/{act}", {"seal": seal, "lang": "en"})
+        assert told.status == 404
+        assert "There is no such" in told.text
+    key = planned()
+    assert visitor.post(f"/activities/{key}/cancel", {"seal": seal, "lang": "en"}).status == 404
+    led = visitor.ask("GET", f"/activities/{key}/book?lang=en")
+    assert (led.status, led.headers["Location"]) == (303, f"/activities/{key}?lang=en")
+
+
 @pytest.mark.parametrize("size", ["0", "3", "-1", "1.5", "two", "", "９"])
 def test_a_number_that_is_none_is_refused_beside_the_form(counter, planned, size):
     visitor, _ = member(counter)
@@ -108,7 +121,7 @@ def test_no_form_brings_what_a_database_refuses(counter, planned):
     visitor, _ = member(counter)
     visit = planned(kind="visit")
     told = visitor.send(f"/visit/{visit}?lang=en", "form-book", size="1", party="class\0")
-    assert told.status == 413
+    assert told.status == 400
     assert "form-cancel" not in told.text
     assert counter.people.bookings.for_occasion(visit) == ()
 

@@ -274,8 +274,13 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "This form is out of date or comes from elsewhere: open the page again and repeat.",
     ),
     "form-size": (
-        "提交的内容过大或格式不对，请缩短后再试。",
-        "What was sent is too large or no form: shorten it and repeat.",
+        "提交的内容过大，请缩短后再试。",
+        "What was sent is too large: shorten it and repeat.",
+    ),
+    "form-kind": (
+        "提交的内容无法读取：请重新打开本页再试；程序须发送 JSON 对象，其值为文字、数字、true 或 false。",
+        "What was sent cannot be read: open the page again and repeat; a program sends a JSON object whose values are "
+        "texts, numbers, true or false.",
     ),
 }
 
@@ -290,6 +295,10 @@ _MISSING = frozenset(
         "no-revision",
         "no-backup",
         "no-questionnaire",
+        "no-booking",
+        "no-bake",
+        "no-token",
+        "no-suggestion",
     }
 )
 
@@ -312,7 +321,7 @@ class PeopleError(ValueError):
 
     @property
     def missing(self) -> bool:
-        """Whether what was asked for is not there: of a page, 404."""
+        """Whether what was asked for is not there: 404 where the address names it."""
         return self.key in _MISSING
 
     def text(self, language: str) -> str:
