@@ -163,6 +163,7 @@ class Stock:
         whole = {"kind": "activity", "places": 20, "party": 4} | told | TITLES
         self.given |= {"POST events": whole, "POST events/{key}": whole}
         self.given["POST visits"] = whole | {"kind": "visit", "minutes": 20}
+        self.given["POST events/{key}/off"] = {"sure": True}
         self.asked["GET day"] = {"day": [f"{soon.astimezone():%Y-%m-%d}"]}
         self.asked["GET events"] = {"past": ["1"]}
 

@@ -15,6 +15,7 @@ from office_clerk import PASSWORD, clerk
 from open_counter import ASKED, SAID, answered
 
 from hall_app.house.people import People, Role
+from hall_app.house.people.records import Plan
 from survey.export import pseudonym
 
 NUMBERS = itertools.count()
@@ -314,7 +315,15 @@ def test_an_event_from_plan_to_check_in(counter, people):
     assert "A longer talk" in one.get(f"/office/day?day={day}&lang=en").text
     for edge in ("0001-01-01", "9999-12-31", "2026-13-01"):
         assert one.get(f"/office/day?day={edge}").status == 200
-    one.told(f"events/{key}/off", {})
+    off = f"/office/events/{key}/off"
+    unsure = one.send(f"/office/events/{key}?lang=en", "form-off")
+    assert unsure.status == one.api(f"events/{key}/off", {}).status == 400
+    assert "It cannot be put back" in unsure.text
+    assert "People down for it, to be told by you: 4." in unsure.text, "nobody is called off unasked"
+    assert one.told(f"events/{key}")["cancelled"] is False
+    assert one.send(unsure, "form-off", sure="on").status == 200
+    assert one.told(f"events/{key}")["cancelled"] is True
+    assert off not in one.get(f"/office/events/{key}").text
     assert f"/activities/{key}" not in Visitor(counter.url).get("/activities").text
 
 
@@ -345,6 +354,34 @@ def test_two_who_change_an_event_at_once_do_not_undo_each_other(counter, people)
     assert now["title_en"] == "Theirs"
     assert first.api(f"events/{key}", EVENT | {"seen": "0" * 16}).status == 409
     first.told(f"events/{key}", EVENT | {"seen": now["mark"]})
+
+
+def test_nothing_is_planned_in_the_past(counter, people):
+    one = clerk(counter, people, Role.CURATOR)
+    past = EVENT | {"begins": "2020-03-05T10:00", "ends": "2020-03-05T12:00"}
+    key, before = one.told("events", EVENT)["id"], len(one.told("events?past=1"))
+    for path, given in (("events", past), ("visits", past | {"minutes": 30}), (f"events/{key}", past)):
+        told = one.api(path, given)
+        assert (told.status, json.loads(told.body)["error"]) == (400, "occasion-past")
+        assert "2020-03-05 10:00 is past" in told.text
+        assert "2020-03-05 10:00 已经过去" in one.api(f"{path}?lang=zh", given).text
+    assert len(one.told("events?past=1")) == before
+    begun = Plan("activity", "讲座", "A talk", SOON - timedelta(days=6), SOON, 3, 2)
+    (running,) = people.occasions.plan("console", begun)
+    page = one.get(f"/office/events/{running}?lang=en")
+    assert one.send(page, "form-event", title_en="Goes on").status == 200, (
+        "what has begun is changed all the same"
+    )
+    assert one.told(f"events/{running}")["title_en"] == "Goes on"
+
+
+def test_hours_are_of_visits_and_ask_for_no_kind(counter, people):
+    one = clerk(counter, people, Role.CURATOR)
+    page = one.get("/office/events?lang=en")
+    assert "kind" in page.form("form-event")
+    assert "kind" not in page.form("form-visits")
+    told = json.loads(one.api("openapi.json").body)["paths"]["/api/office/visits"]["post"]["requestBody"]
+    assert "kind" not in told["content"]["application/json"]["schema"]["properties"]
 
 
 @pytest.mark.parametrize(

@@ -145,6 +145,14 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "请按 2026-12-05T14:00 的形式填写时间，结束须晚于开始。",
         "Write times as 2026-12-05T14:00, with the end after the beginning.",
     ),
+    "occasion-past": (
+        "{when} 已经过去，请填写将来的时间。",
+        "{when} is past: give a time to come.",
+    ),
+    "occasion-off": (
+        "取消后不能恢复，已预约的人也不会自动得到通知：请先勾选确认。",
+        "It cannot be put back, and whoever has booked is told nothing by itself: tick the box first.",
+    ),
     "occasion-places": (
         "名额须为 {least} 至 1000 的整数，每次预约的人数不超过名额。",
         "Places are a whole number from {least} to 1000, and one booking is for no more than that.",

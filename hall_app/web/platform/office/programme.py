@@ -24,6 +24,7 @@ from hall_app.web.platform.counter import (
 )
 from hall_app.web.platform.office.deeds import Deed, Reading, number_in
 from hall_app.web.platform.office.table import office_page, rows
+from survey.store.database import now
 
 __all__ = ["programme_deeds", "programme_readings"]
 
@@ -58,13 +59,21 @@ def programme_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one, booking = "events/{key}", "events/{key}/bookings/{booking}"
     seen = {"turn": "of the booking as it was read; refused where its number is another's by now"}
+    hours = {name: words for name, words in _PLAN.items() if name != "kind"}
     slots = {"minutes": f"of each slot, five at least; {MOST_SLOTS} slots at once"}
     change = {"seen": "the plan's mark as it was read; 409 where it is another by now"}
     return (
         Deed("events", "events", rooms.plan, "events/{id}", rooms.all_page, fields=_PLAN),
-        Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page, fields=_PLAN | slots),
+        Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page, fields=hours | slots),
         Deed(one, "events", rooms.change, one, rooms.one_page, fields=_PLAN | change),
-        Deed(f"{one}/off", "events", rooms.call_off, one, rooms.one_page),
+        Deed(
+            f"{one}/off",
+            "events",
+            rooms.call_off,
+            one,
+            rooms.one_page,
+            fields={"sure": "true: nothing undoes it"},
+        ),
         Deed(f"{booking}/arrive", "check-in", rooms.arrive, one, rooms.one_page, fields=seen),
         Deed(f"{booking}/leave", "check-in", rooms.leave, one, rooms.one_page, fields=seen),
         Deed(f"{booking}/cancel", "reservations", rooms.cancel, one, rooms.one_page, fields=seen),
@@ -89,12 +98,12 @@ class _Rooms:
         ]
 
     def plan(self, asking: Asking) -> dict[str, Any]:
-        (key,) = self._people.occasions.plan(asking.person.id, _plan(asking))
+        (key,) = self._people.occasions.plan(asking.person.id, _to_come(_plan(asking)))
         return {"id": key}
 
     def plan_visits(self, asking: Asking) -> dict[str, Any]:
         """Slots of one day, one after the other."""
-        given, first = asking.form, _plan(asking)
+        given, first = asking.form, _to_come(_plan(asking))
         length = timedelta(minutes=number_in(given.get("minutes", "")))
         if not timedelta(minutes=5) <= length or not (first.ends - first.begins) // length <= MOST_SLOTS:
             raise PeopleError("occasion-slots", most=MOST_SLOTS)
@@ -109,11 +118,16 @@ class _Rooms:
     def change(self, asking: Asking) -> dict[str, Any]:
         key = asking.names["key"]
         plan, seen = _plan(asking), asking.form.get("seen", "")
+        before = self._people.occasions.of(key).plan.begins
+        if abs(plan.begins - before) >= timedelta(minutes=1):  # a form gives no seconds
+            _to_come(plan)
         self._people.occasions.change(asking.person.id, key, plan, seen)
         return {"id": key}
 
     def call_off(self, asking: Asking) -> dict[str, Any]:
         key = asking.names["key"]
+        if not asking.form.get("sure"):
+            raise PeopleError("occasion-off")
         self._people.occasions.call_off(asking.person.id, key)
         return {"id": key, "cancelled": True}
 
@@ -154,19 +168,15 @@ class _Rooms:
         sheet = self._sheet(asking, one)
         why = (
             f'<p class="refused" role="alert">{escape(asking.refusal)}</p>'
-            if asking.refusal and asking.form.get("of") != "event"
+            if asking.refusal and asking.form.get("of") not in ("event", "off")
             else ""
         )
         changed = ""
         if asking.person.may("events"):
-            off = (
-                ""
-                if one.cancelled
-                else button(asking, "off", f"{at}/off", word("取消此场", "Call it off"), hidden={})
-            )
+            off = "" if one.cancelled else _off(asking, one)
             words, hidden = word("保存", "Save"), {"seen": one.plan.mark}
             sent = form(asking, "event", at, _fields(asking, one), words, hidden=hidden)
-            changed = f'<h2 class="small">{word("更改", "Change")}</h2><div class="desk">{sent}{off}</div>'
+            changed = f'<h2 class="small">{word("更改", "Change")}</h2><div class="desk">{sent}</div>{off}'
         lead = f"{told_time(one.plan.begins, asking.lang)} · {one.taken} / {one.plan.places}"
         lead += f" · {word('已取消', 'called off')}" if one.cancelled else ""
         heading = word("预约", "Reservations")
@@ -214,14 +224,8 @@ class _Rooms:
             lines.append((escape(name), escape(made.party), str(made.size), state, deeds))
         if not lines:
             return f"<p>{word('还没有预约。', 'Nobody has booked yet.')}</p>"
-        heads = (
-            word("姓名", "Name"),
-            word("团体", "Group"),
-            word("人数", "People"),
-            word("状态", "State"),
-            "",
-        )
-        heads = (*heads[:4], f'<span class="unseen">{word("操作", "Acts")}</span>')
+        heads = [word("姓名", "Name"), word("团体", "Group"), word("人数", "People"), word("状态", "State")]
+        heads += [f'<span class="unseen">{word("操作", "Acts")}</span>']
         return rows(one.told("title", asking.lang), heads, lines)
 
     def _bookings(self, one: Occasion) -> tuple[Booking, ...]:
@@ -326,6 +330,25 @@ def _plan(asking: Asking) -> Plan:
     return Plan(kind=kind, begins=begins, ends=ends, places=places, party=party, **texts)
 
 
+def _to_come(plan: Plan) -> Plan:
+    """The plan. Raises PeopleError for what would have begun: nobody could book it."""
+    if plan.begins <= now():
+        raise PeopleError("occasion-past", when=f"{plan.begins.astimezone():%Y-%m-%d %H:%M}")
+    return plan
+
+
+def _off(asking: Asking, one: Occasion) -> str:
+    """The form that calls it off, once that is confirmed: nothing puts it back."""
+    word, people = asking.word, one.taken + one.waiting
+    told = word(
+        f"取消后不能恢复。已有 {people} 人预约或候补，须由您通知。",
+        f"It cannot be put back. People down for it, to be told by you: {people}.",
+    )
+    sure = Field("sure", word("确定取消此场", "Yes, call it off"), "check", hint=told)
+    sent = form(asking, "off", f"/office/events/{one.id}/off", (sure,), word("取消此场", "Call it off"))
+    return f'<h2 class="small">{word("取消", "Call off")}</h2><div class="desk">{sent}</div>'
+
+
 def _fields(
     asking: Asking, one: Occasion | None, *, title: tuple[str, str] = ("", ""), place: str = ""
 ) -> tuple[Field, ...]:
@@ -336,7 +359,13 @@ def _fields(
     titles = (plan.title_zh, plan.title_en) if plan else title
     texts = (plan.text_zh, plan.text_en) if plan else ("", "")
     places = (plan.place_zh, plan.place_en) if plan else ("展厅", "In the hall") if place else ("", "")
-    kind = plan.kind if plan else "visit" if place else "activity"
+    kind = Field(
+        "kind",
+        word("类别", "Kind"),
+        "select",
+        value=plan.kind if plan else "activity",
+        choices={"activity": _kind(asking, "activity"), "visit": _kind(asking, "visit")},
+    )
     return (
         Field("title_zh", word("标题", "Title") + chinese, value=titles[0], given={"maxlength": "120"}),
         Field("title_en", word("标题", "Title") + english, value=titles[1], given={"maxlength": "120"}),
@@ -360,13 +389,7 @@ def _fields(
         Field("place_en", word("地点", "Where") + english, value=places[1], needed=False),
         Field("text_zh", word("说明", "Text") + chinese, "textarea", value=texts[0], needed=False),
         Field("text_en", word("说明", "Text") + english, "textarea", value=texts[1], needed=False),
-        Field(
-            "kind",
-            word("类别", "Kind"),
-            "select",
-            value=kind,
-            choices={"activity": _kind(asking, "activity"), "visit": _kind(asking, "visit")},
-        ),
+        *(() if place else (kind,)),  # hours are of visits
     )
 
 
