@@ -112,11 +112,20 @@ class Counter:
 
         self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
 
-    def act(self, path: str, act: Act, again: View, takes: Takes = PLAIN, on: str = "") -> None:
+    def act(
+        self,
+        path: str,
+        act: Act,
+        again: View,
+        takes: Takes = PLAIN,
+        on: str = "",
+        before: Callable[[Asking], None] | None = None,
+    ) -> None:
         """Answer POST by `act`; what is refused shows the page `again`, with the reason.
 
         on: path of the page that its form is on, else the nearest page above it; who asks for the act itself, by a
-        mark or a page loaded again, is led there. Pages are added before the acts of the same path.
+        mark or a page loaded again, is led there. Pages are added before the acts of the same path. before: raises
+        PeopleError for who may not, ahead of a large form's reading.
         """
 
         async def asked(request: Request) -> Response:
@@ -126,6 +135,8 @@ class Counter:
                 # Nobody's megabytes are read but those of who is signed in.
                 if takes.largest > PLAIN.largest and await run_in_threadpool(self.guest, request) is None:
                     return await run_in_threadpool(self._answer, request, None, again, again)
+                if takes.largest > PLAIN.largest and before is not None:
+                    await run_in_threadpool(lambda: before(self.asking(request)))
                 form = await form_of(request, takes)
                 return await run_in_threadpool(self._answer, request, form, act, again)
             except PeopleError as error:

@@ -7,6 +7,7 @@ the form, the API answers 401.
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -66,7 +67,8 @@ class Access:
 
         page = self._staff(one.act, one.page)
         on = f"/office/{one.back}" if "/" not in one.path else ""
-        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page, one.takes, on)
+        may = partial(self._check, act=one.act)
+        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page, one.takes, on, may)
         self._program("POST", one.path, one.act, one.do, one.takes)
 
     def _staff(self, act: str, view: View) -> Act:

@@ -124,12 +124,16 @@ class Desk:
 
     def moved(self, key: str) -> bool:
         """Whether its draft has it elsewhere than the hall or, where the hall has none, than where it began."""
-        hall = self.drafts.hall_text(key, TOML)
-        try:
-            before = _table(hall).get("place") if hall else self.first_place()
-        except PeopleError:
-            before = None
+        there = self.drafts.hall_text(key, TOML)
+        before = self._hall(key).get("place") if there else self.first_place()
         return self.drafts.of(key) is not None and self.table(key).get("place") != before
+
+    def _hall(self, key: str) -> dict[str, Any]:
+        """Its exhibit.toml in the hall, empty where it cannot be read."""
+        try:
+            return _table(self.drafts.hall_text(key, TOML))
+        except PeopleError:
+            return {}
 
     def first_place(self) -> dict[str, float]:
         """Where a new exhibit stands until it is placed."""
@@ -142,7 +146,7 @@ class Desk:
 
     def _check_place(self, asking: Asking, key: str, toml: bytes | None) -> None:
         """Raises PeopleError, and writes it down, where someone moves an exhibit who may not."""
-        before = self.table(key)
+        before = self.table(key) or self._hall(key)
         if toml is None or not before or asking.person.may("place"):
             return
         if _table(toml.decode("utf-8-sig")).get("place") != before.get("place"):

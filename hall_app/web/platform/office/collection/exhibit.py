@@ -177,7 +177,7 @@ class Exhibits:
         for name in sorted(self._desk.drafts.files(key)):
             query = {"file": name} if name in TEXT_FILES else {"name": name}
             way = asking.address(f"{at}/{'text' if name in TEXT_FILES else 'file'}", **query)
-            size = self._desk.drafts.path(key, name).stat().st_size
+            size = self._size(key, name)
             goes = ""
             if name not in TEXT_FILES:
                 goes = button(
@@ -196,6 +196,13 @@ class Exhibits:
             "A text file opens whole in an editor; comments and order stay.",
         )
         return part("files", title, f'<p class="quiet">{told}</p><ul class="rows">{"".join(lines)}</ul>')
+
+    def _size(self, key: str, name: str) -> int:
+        """[bytes], 0 for a file that the shelf has lost."""
+        try:
+            return self._desk.drafts.path(key, name).stat().st_size
+        except PeopleError:
+            return 0
 
     def text_page(self, asking: Asking) -> Shown:
         desk, key, word = self._desk, self._desk.key(asking), asking.word

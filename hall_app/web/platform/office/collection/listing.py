@@ -67,8 +67,6 @@ class Listing:
     def make(self, asking: Asking) -> dict[str, Any]:
         desk, given = self._desk, asking.form
         key = given.get("id", "").strip()
-        if desk.drafts.known(key):
-            raise PeopleError("exhibit-taken")
         titles = {lang: given.get(f"title.{lang}", "").strip() for lang in ("zh", "en")}
         if not all(titles.values()) or max(map(len, titles.values())) > 200:
             raise PeopleError("content-file", why="title: needs both languages, 200 characters each at most")
@@ -76,8 +74,11 @@ class Listing:
         quoted = {lang: _quoted(text) for lang, text in titles.items()}
         table = _NEW.format(**quoted, **place)
         texts = {f"text.{lang}.md": f"{text}\n".encode() for lang, text in titles.items()}
-        desk.people.note(asking.person.id, "draft", key)
-        desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
+        with desk.drafts.lock:  # of two who want the same name at once one has it
+            if desk.drafts.known(key):
+                raise PeopleError("exhibit-taken")
+            desk.people.note(asking.person.id, "draft", key)
+            desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
         return {"id": key}
 
     def page(self, asking: Asking) -> Shown:
