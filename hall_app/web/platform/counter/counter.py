@@ -136,7 +136,7 @@ class Counter:
                 if takes.largest > PLAIN.largest and await run_in_threadpool(self.guest, request) is None:
                     return await run_in_threadpool(self._answer, request, None, again, again)
                 if takes.largest > PLAIN.largest and before is not None:
-                    await run_in_threadpool(lambda: before(self.asking(request)))
+                    await run_in_threadpool(before, await run_in_threadpool(self.asking, request))
                 form = await form_of(request, takes)
                 return await run_in_threadpool(self._answer, request, form, act, again)
             except PeopleError as error:
