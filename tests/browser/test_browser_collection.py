@@ -201,5 +201,6 @@ def test_the_collection_is_clean_and_fits(office_hall, chromium, lang, width):
         mark = "&" if "?" in path else "?"
         read_whole(page, f"{hall.url}{path}{mark}lang={lang}", width, SMALL)
         assert page.evaluate("document.activeElement.id") == "main", path
-    clerks.ask("POST", "/api/office/collection/box/drop", b"{}", told)
+    seen = json.dumps({"seen": json.loads(clerks.get("/api/office/collection/box").body)["mark"]}).encode()
+    clerks.ask("POST", "/api/office/collection/box/drop", seen, told)
     page.context.close()

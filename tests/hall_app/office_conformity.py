@@ -28,7 +28,7 @@ OFFICE = "/api/office/"
 
 @dataclass
 class Watch:
-    """Round the application: counts what is answered, and has the stock put back before a deed."""
+    """Round the application: counts what is answered, and has the stock put back before what may have been taken."""
 
     app: FastAPI
     stock: Stock | None = None
@@ -38,7 +38,9 @@ class Watch:
         own = any(name == OWN.lower().encode() for name, _ in scope.get("headers", ()))
         if self.stock is None or own or not scope.get("path", "").startswith(OFFICE):
             return await self.app(scope, receive, send)
-        if scope["method"] == "POST":
+        if scope["method"] == "POST" or scope["path"].endswith(
+            ("/picture", "/shape")
+        ):  # of what an upload replaces
             await run_in_threadpool(self.stock.refresh, scope["path"].removeprefix(OFFICE))
 
         async def counted(message: Any) -> None:

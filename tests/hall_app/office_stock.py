@@ -113,15 +113,22 @@ class Stock:
             "POST collection/{key}/place": {"place.x": 1.5, "place.z": -1.0},
             "POST collection/{key}/undo": {"revision": newest},
         }
+        self._exhibit_again("drop")
+        self.given["POST collection/{key}/drop"] = {
+            "seen": self._tell(one)["mark"]
+        }  # the same for the same files
 
     def _exhibit_again(self, deed: str) -> None:
         home = self.counter.content / "exhibits" / "chest"
-        if self._tell("collection/chest")["draft"]:
-            self._tell("collection/chest/drop", {})
+        self._drop()
         if (home / "exhibit.toml").read_bytes() != self._texts["second"]:
             (home / "exhibit.toml").write_bytes(self._texts["second"])
         if deed in ("publish", "drop"):
             self._tell("collection/chest/fields", {"licence": "CC-BY-4.0"})
+
+    def _drop(self) -> None:
+        if (told := self._tell("collection/chest"))["draft"]:
+            self._tell("collection/chest/drop", {"seen": told["mark"]})
 
     def _people(self) -> None:
         people = self.counter.people
@@ -156,6 +163,7 @@ class Stock:
         whole = {"kind": "activity", "places": 20, "party": 4} | told | TITLES
         self.given |= {"POST events": whole, "POST events/{key}": whole}
         self.given["POST visits"] = whole | {"kind": "visit", "minutes": 20}
+        self.given["POST events/{key}/off"] = {"sure": True}
         self.asked["GET day"] = {"day": [f"{soon.astimezone():%Y-%m-%d}"]}
         self.asked["GET events"] = {"past": ["1"]}
 

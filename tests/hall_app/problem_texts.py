@@ -30,6 +30,7 @@ SPEAKERS: Mapping[str, Sequence[tuple[int, str]]] = {
     "EditError": ((0, "what"),),
     "PydanticCustomError": ((1, "message_template"),),
     "PeopleError": ((9, "why"),),
+    "_RefusedError": ((9, "why"),),  # of a recording
     "read_text": ((2, "what"),),  # whose text is missing
     "progress": ((1, "label"),),  # of a bake, told in the office
 }

@@ -163,6 +163,15 @@ def test_no_other_page_can_act_for_a_visitor(plain_hall, how):
     assert address in again.text
 
 
+@pytest.mark.parametrize(
+    "path", ["sign-in", "sign-out", "profile", "copy", "answers/forget", "second-factor/end"]
+)
+def test_the_address_of_a_form_leads_to_its_page(plain_hall, path):
+    led = Visitor(plain_hall.url).ask("GET", f"/me/{path}?lang=en")
+    to = "/me/second-factor" if path.startswith("second") else "/me"
+    assert (led.status, led.headers["Location"]) == (303, f"{to}?lang=en")
+
+
 def test_a_form_of_another_kind_or_too_large_is_refused(plain_hall):
     visitor, _ = member(plain_hall)
     seal = visitor.get("/me").form("form-profile")["seal"]
@@ -174,7 +183,7 @@ def test_a_form_of_another_kind_or_too_large_is_refused(plain_hall):
         json.dumps({"seal": seal, "name": "Eve"}).encode(),
         {"Content-Type": "application/json", "Origin": plain_hall.url},
     )
-    assert json_kind.status == 413
+    assert json_kind.status == 400
     assert "Eve" not in visitor.get("/me").text
 
 

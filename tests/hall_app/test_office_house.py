@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
+from html import unescape
 from urllib.parse import quote
 
 import event_loop
@@ -20,6 +23,16 @@ from hall_app.house.safekeeping import check_archive
 @pytest.fixture
 def administrator(counter):
     return clerk(counter, counter.people, Role.ADMINISTRATOR)
+
+
+def test_the_command_of_a_restored_house_can_be_pasted(tmp_path):
+    with open_counter(tmp_path / "my house") as counter:
+        one = clerk(counter, counter.people, Role.ADMINISTRATOR)
+        name = one.told("backups", {})["name"]
+        done = one.send("/office/backups?lang=en", "form-restore-0", name=name)
+        command = shlex.split(unescape(re.findall(r"<code>(hall serve .*?)</code>", done.text)[0]))
+        home = counter.data / "restored" / name.removesuffix(".zip")
+    assert command == ["hall", "serve", "--content", str(home / "content"), "--data", str(home / "data")]
 
 
 def test_a_backup_is_made_fetched_and_restored_beside(counter, administrator, tmp_path):
@@ -111,7 +124,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         queue.stopped()
         event_loop.run(queue.want(wanted))
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
-        assert one.api("bakes/nothing/stop", {}).status == 400
+        assert one.api("bakes/nothing/stop", {}).status == 404
         page = one.get("/office/bakes")
         assert "展厅灯光" in page.text
         one.send(page, f"/office/bakes/{quote(ROOM)}/stop")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import shutil
 import struct
 import uuid
@@ -53,6 +54,41 @@ def ball(subdivisions: int, ending: str) -> bytes:
     )
     data = mesh.export(file_type=ending)
     return data if isinstance(data, bytes) else data.encode()
+
+
+def test_a_model_goes_with_what_takes_its_place(counter, curator, chest):
+    """Else the check would refuse the draft: nothing may lie there unused."""
+    key, box = chest.name, (chest / "media/chest.glb").read_bytes()
+    (chest / "exhibit.toml").write_text(EXHIBIT.replace("z = -1.0", "z = 2.0"), "utf-8")
+    steps = (
+        ("hall", "new.glb", box, "media/new.glb", ["media/chest.glb"]),
+        ("close", "close.glb", box, "media/close.glb", []),
+        ("scan", "ball.ply", ball(2, "ply"), "scan/ball.ply", ["media/new.glb", "media/close.glb"]),
+        ("hall", "chest.glb", box, "media/chest.glb", ["scan/ball.ply"]),
+    )
+    for use, name, data, brought, gone in steps:
+        answer = curator.bring(key, [(name, data)], use=use)
+        assert list(json.loads(answer.body)["files"]) == [brought]
+        files = curator.told(f"collection/{key}")["files"]
+        assert brought in files
+        assert not set(gone) & set(files)
+        if use != "scan":  # which is baked first
+            assert curator.api(f"collection/{key}/publish", {}).status == 200
+    assert sorted(one.name for one in (chest / "media").iterdir()) == ["chest.glb", "front.jpg"]
+
+
+def test_a_model_that_something_else_names_stays(counter, curator, chest):
+    key, box = chest.name, (chest / "media/chest.glb").read_bytes()
+    hall = 'hall = "media/chest.glb"'
+    (chest / "exhibit.toml").write_text(EXHIBIT.replace(hall, f'{hall}\nclose = "media/chest.glb"'), "utf-8")
+    assert curator.bring(key, [("new.glb", box)], use="hall").status == 200
+    assert "media/chest.glb" in curator.told(f"collection/{key}")["files"]
+    assert curator.bring(key, [("near.glb", box)], use="close").status == 200
+    assert "media/chest.glb" not in curator.told(f"collection/{key}")["files"]
+    curator.drop(key)
+    (chest / "text.en.md").write_text("The [model](media/chest.glb) itself.", "utf-8")
+    assert curator.bring(key, [("new.glb", box)], use="hall").status == 200
+    assert "media/chest.glb" in curator.told(f"collection/{key}")["files"]
 
 
 @pytest.mark.slow

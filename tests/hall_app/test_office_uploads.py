@@ -62,7 +62,7 @@ def bring(counter, curator):
         (name,) = json.loads(answer.body)["files"]
         kept = curator.ask("GET", f"/office/collection/hostile/file?name={name}")
         assert kept.status == 200
-        curator.told("collection/hostile/drop", {})
+        curator.drop("hostile")
         return name[name.rindex(".") :], kept.body
 
     return act
@@ -176,7 +176,7 @@ def test_a_hostile_file_harms_nobody(counter, curator, name, data, use):
     assert snapshot(counter.content) == before, "nothing is in the hall before it is published"
     assert curator.api("collection/hostile").status == 200
     if curator.told("collection/hostile")["draft"]:
-        curator.told("collection/hostile/drop", {})
+        curator.drop("hostile")
 
 
 def test_what_was_taken_in_and_published_is_served_to_everybody_as_what_it_is(counter, curator):

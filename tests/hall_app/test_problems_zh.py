@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import ast
 import inspect
+import io
+import json
 import re
 import shutil
 import tomllib._parser
 import uuid
+import wave
 from collections.abc import Iterator
 from html import unescape
 from typing import Any, get_args
@@ -282,6 +285,21 @@ def test_a_form_that_cannot_be_saved_is_told_in_chinese(curator, chest, given, t
     answer = curator.api(f"collection/{chest}/fields?lang=zh", given)
     assert answer.status == 400
     assert told in answer.text
+
+
+def test_a_recording_that_is_cut_off_is_told_in_chinese(curator, chest):
+    data = io.BytesIO()
+    with wave.open(data, "wb") as sound:
+        sound.setparams((1, 2, 8000, 0, "NONE", ""))
+        sound.writeframes(bytes(32_000))
+    refused = curator.bring(chest, [("bell.wav", data.getvalue()[:9_000])], use="sound")
+    assert refused.status == 400
+    english = json.loads(refused.body)["text"]
+    why = re.findall(r"\((.*)\)", english)[0]
+    assert not re.search("[A-Za-z]{3}", in_language(why, "zh")), why
+    for why in ("it holds no picture", "it says 12 s and ends before", "sound: 3 of 9 cannot be decoded"):
+        told = PeopleError("file-broken", name="bell.wav", why=why).text("zh")
+        assert foreign(told) == [], told
 
 
 def test_a_file_that_is_no_toml_is_told_in_chinese(curator, chest):

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 from datetime import UTC, datetime, timedelta
+from html import unescape
+from zoneinfo import ZoneInfo
 
 import pytest
 from form_visitor import Visitor
 from icalendar import Calendar
+from office_clerk import clerk
+from open_counter import open_counter
 from test_me import PASSWORD, member
 
 from hall_app.content.search import Query, SearchIndex
-from hall_app.house.people import People
+from hall_app.house.people import People, Role
 from hall_app.house.people.records import Plan
 from hall_app.web.platform import programme_entries
 
@@ -90,6 +95,19 @@ def test_what_has_begun_or_is_off_offers_nothing_to_book(counter, planned):
             assert "A booking needs an account" not in page
 
 
+def test_what_is_not_there_is_not_booked_or_cancelled(counter, planned):
+    visitor, _ = member(counter)
+    seal = visitor.get("/me").form("form-profile")["seal"]
+    for act in ("book", "cancel"):
+        told = visitor.post(f"/activities/nothing/{act}", {"seal": seal, "lang": "en"})
+        assert told.status == 404
+        assert "There is no such" in told.text
+    key = planned()
+    assert visitor.post(f"/activities/{key}/cancel", {"seal": seal, "lang": "en"}).status == 404
+    led = visitor.ask("GET", f"/activities/{key}/book?lang=en")
+    assert (led.status, led.headers["Location"]) == (303, f"/activities/{key}?lang=en")
+
+
 @pytest.mark.parametrize("size", ["0", "3", "-1", "1.5", "two", "", "９"])
 def test_a_number_that_is_none_is_refused_beside_the_form(counter, planned, size):
     visitor, _ = member(counter)
@@ -103,7 +121,7 @@ def test_no_form_brings_what_a_database_refuses(counter, planned):
     visitor, _ = member(counter)
     visit = planned(kind="visit")
     told = visitor.send(f"/visit/{visit}?lang=en", "form-book", size="1", party="class\0")
-    assert told.status == 413
+    assert told.status == 400
     assert "form-cancel" not in told.text
     assert counter.people.bookings.for_occasion(visit) == ()
 
@@ -190,3 +208,96 @@ def test_what_was_just_planned_is_found_in_the_open_hall(plain_hall):
     people.occasions.call_off("console", key)
     assert json.loads(stranger.get("/api/search?q=rubbing&lang=en").body)["found"] == []
     people.close()
+
+
+DAYS, HOURS = 64, 8
+
+
+@pytest.fixture(scope="module")
+def busy(tmp_path_factory):
+    """A counter of its own with more to come than any page lists; the noon of its first day."""
+    noon = (datetime.now() + timedelta(days=2)).replace(hour=12, minute=0, second=0, microsecond=0)
+    with open_counter(tmp_path_factory.mktemp("busy")) as found:
+        starts = [noon + timedelta(days=day, hours=hour - 4) for day in range(DAYS) for hour in range(HOURS)]
+        found.people.occasions.plan("console", *map(guided, starts))
+        yield found, noon
+
+
+def guided(at: datetime, kind: str = "visit") -> Plan:
+    begins = at if at.tzinfo else at.astimezone()
+    return Plan(kind, "讲解", "Guided", begins, begins + timedelta(hours=1), 10, 10)
+
+
+@pytest.fixture
+def people_of(tmp_path):
+    found = People(tmp_path)
+    yield found
+    found.close()
+
+
+def test_what_comes_after_the_five_hundredth_is_there(busy):
+    counter, noon = busy
+    curator, stranger = clerk(counter, counter.people, Role.CURATOR), Visitor(counter.url)
+    last = noon + timedelta(days=DAYS + 40)
+    visit, activity = counter.people.occasions.plan("console", guided(last), guided(last, "activity"))
+    sheet = curator.told(f"day?day={last:%Y-%m-%d}")
+    assert [one["id"] for one in sheet] == sorted([visit, activity])
+    assert f"/office/events/{visit}/" not in curator.get(f"/office/day?day={noon:%Y-%m-%d}").text
+    assert len(curator.told(f"day?day={noon:%Y-%m-%d}")) == HOURS
+    listed, page = [], 1
+    while found := curator.told(f"events?page={page}"):
+        assert len(found) <= 200
+        listed += [one["id"] for one in found]
+        page += 1
+    assert len(set(listed)) == len(listed) == DAYS * HOURS + 2
+    shown = curator.get("/office/events?lang=en")
+    for _ in range(page - 2):
+        shown = curator.get(unescape(re.findall(r'rel="next" href="([^"]*)"', shown.text)[0]))
+    assert f"/office/events/{activity}" in shown.text
+    assert 'rel="next"' not in shown.text
+    assert 'rel="prev"' in shown.text
+    assert visit in stranger.get(f"/visit?month={last:%Y-%m}&lang=en").text
+    assert f'month={last:%Y-%m}"' in stranger.get("/visit?lang=en").text, "its month is named"
+
+
+def test_the_months_of_visits_hold_all_of_them_once(busy):
+    counter, _ = busy
+    stranger = Visitor(counter.url)
+    first = stranger.get("/visit?lang=zh").text
+    months = re.findall(r'/visit\?lang=zh&month=([\d-]+)"', first.replace("&amp;", "&"))
+    assert months == sorted(set(months))
+    pages = [stranger.get(f"/visit?lang=zh&month={month}").text for month in months]
+    assert pages[0].partition("<main")[2] == first.partition("<main")[2], "the next one is shown unasked"
+    shown = [key for page in pages for key in re.findall(r'href="/visit/([0-9a-f]+)\?', page)]
+    assert len(shown) == len(set(shown)) >= DAYS * HOURS
+    for odd in ("2026-13", "x", "9999-12", "0001-01"):
+        assert stranger.get(f"/visit?month={odd}").status == 200
+
+
+def test_activities_are_listed_on_pages(tmp_path):
+    with open_counter(tmp_path) as counter:
+        at = datetime.now() + timedelta(days=2)
+        keys = counter.people.occasions.plan(
+            "console", *(guided(at + timedelta(hours=n), "activity") for n in range(70))
+        )
+        stranger, shown = Visitor(counter.url), []
+        for page in ("", "&page=2", "&page=3", "&page=x"):
+            shown.append(
+                re.findall(
+                    r'href="/activities/([0-9a-f]{16})\?', stranger.get(f"/activities?lang=en{page}").text
+                )
+            )
+        calendar = Calendar.from_ical(stranger.ask("GET", "/activities.ics").body).walk("VEVENT")
+    assert (*shown[0], *shown[1]) == keys
+    assert shown[2:] == [[], shown[0]]
+    assert len(calendar) == len(keys), "a calendar has all of them"
+
+
+@pytest.mark.parametrize("zone", ["Asia/Shanghai", "America/New_York"])
+def test_an_hour_is_kept_whatever_the_clock_it_was_given_by(people_of, zone):
+    at = datetime(2099, 1, 5, 14, 0, tzinfo=ZoneInfo(zone))
+    (key,) = people_of.occasions.plan("console", guided(at))
+    assert people_of.occasions.of(key).plan.begins == at
+    assert [one.id for one in people_of.occasions.between(at, at + timedelta(seconds=1))] == [key]
+    people_of.occasions.change("console", key, guided(at + timedelta(hours=1)))
+    assert people_of.occasions.of(key).plan.begins == at + timedelta(hours=1)

@@ -113,8 +113,8 @@ class Drafts:
         return path
 
     def text(self, exhibit: str, name: str) -> str:
-        """A text file as it is to be; "" for one that is not there yet. Raises PeopleError."""
-        return _read(self.path(exhibit, name)) if name in self.files(exhibit) else ""
+        """A text file as it is to be; "" for one that is not there yet, or no longer."""
+        return self._bytes(exhibit, name).decode("utf-8-sig", "replace")
 
     def hall_text(self, exhibit: str, name: str) -> str:
         """A text file as the hall has it, "" for none."""
@@ -123,7 +123,7 @@ class Drafts:
 
     def encoded(self, exhibit: str, name: str, text: str) -> bytes:
         """A text as the file is to hold it: lines end as they did there, a mark at its beginning stays."""
-        was = self.path(exhibit, name).read_bytes() if name in self.files(exhibit) else b""
+        was = self._bytes(exhibit, name)
         plain = text.replace("\r\n", "\n").replace("\r", "\n")
         if was and was.count(b"\n") == was.count(b"\r\n") > 0:
             plain = plain.replace("\n", "\r\n")
@@ -172,20 +172,29 @@ class Drafts:
                 del files[name], base[name]
             self._write(replace(draft, base=base, files=files, by=who, at=now().isoformat()))
 
+    def see(self, exhibit: str, seen: str | None) -> Draft:
+        """The draft. seen: its mark when it was looked at; None: nobody looked. Raises PeopleError where there is none,
+        or another by now."""
+        draft = self.of(exhibit)
+        if draft is None:
+            raise PeopleError("no-draft")
+        if seen not in (None, self.mark(exhibit)):
+            raise PeopleError("draft-changed")
+        return draft
+
     def drop(self, exhibit: str) -> None:
         """Forget the draft. Raises PeopleError."""
         with self.lock:
-            if self.of(exhibit) is None:
-                raise PeopleError("no-draft")
+            self.see(exhibit, None)
             (self._folder / f"{exhibit}.json").unlink()
 
     def changes(self, exhibit: str) -> Changed:
-        """The draft's files as they would lie in the content folder."""
+        """The draft's files as they would lie in the content folder; one that the shelf has lost is none."""
         draft = self.of(exhibit)
         if draft is None:
             return {}
         return {
-            f"exhibits/{exhibit}/{name}": self.shelf.path(digest) if digest else None
+            f"exhibits/{exhibit}/{name}": self.shelf.path(digest) if self.shelf.has(digest) else None
             for name, digest in draft.files.items()
         }
 
@@ -196,6 +205,13 @@ class Drafts:
     def _digest(self, exhibit: str, name: str) -> str:
         path = self.home(exhibit) / name
         return whole_digest(path) if is_there(path) else ""
+
+    def _bytes(self, exhibit: str, name: str) -> bytes:
+        """Of a file as it is to be, none where there is no such file."""
+        try:
+            return self.path(exhibit, name).read_bytes()
+        except PeopleError:
+            return b""
 
     def _write(self, draft: Draft) -> None:
         path = self._folder / f"{draft.exhibit}.json"

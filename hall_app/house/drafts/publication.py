@@ -29,11 +29,7 @@ class Publication:
         Raises PeopleError, with what the check finds, or where it is another draft by now; it stays then.
         """
         with self._drafts.lock:
-            draft = self._drafts.of(exhibit)
-            if draft is None:
-                raise PeopleError("no-draft")
-            if seen not in (None, self._drafts.mark(exhibit)):
-                raise PeopleError("draft-changed")
+            draft = self._drafts.see(exhibit, seen)
             for name in draft.files:
                 self._drafts.place(exhibit, name)
             for name in self._drafts.stale(exhibit):

@@ -41,6 +41,9 @@ class Shelf:
             raise PeopleError("no-former")
         return path
 
+    def has(self, digest: str) -> bool:
+        return bool(_DIGEST.fullmatch(digest)) and (self._folder / digest).is_file()
+
     def size(self) -> int:
         """Of all that is kept [bytes]."""
         if not self._folder.is_dir():

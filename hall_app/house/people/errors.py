@@ -145,6 +145,14 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "请按 2026-12-05T14:00 的形式填写时间，结束须晚于开始。",
         "Write times as 2026-12-05T14:00, with the end after the beginning.",
     ),
+    "occasion-past": (
+        "{when} 已经过去，请填写将来的时间。",
+        "{when} is past: give a time to come.",
+    ),
+    "occasion-off": (
+        "取消后不能恢复，已预约的人也不会自动得到通知：请先勾选确认。",
+        "It cannot be put back, and whoever has booked is told nothing by itself: tick the box first.",
+    ),
     "occasion-places": (
         "名额须为 {least} 至 1000 的整数，每次预约的人数不超过名额。",
         "Places are a whole number from {least} to 1000, and one booking is for no more than that.",
@@ -171,8 +179,8 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} was changed again since, so this cannot be undone: undo the newer change first.",
     ),
     "draft-changed": (
-        "草稿在您查看之后又被改动。下面是现在的草稿，请重新查看后再发布。",
-        "The draft was changed since you looked at it. This is how it is now: look again, and publish then.",
+        "草稿在您查看之后又被改动。下面是现在的草稿，请重新查看后再发布或放弃。",
+        "The draft was changed since you looked at it. This is how it is now: look again, and publish or drop it then.",
     ),
     "no-draft": (
         "这件展品没有草稿，可能已经发布或放弃。",
@@ -274,8 +282,13 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "This form is out of date or comes from elsewhere: open the page again and repeat.",
     ),
     "form-size": (
-        "提交的内容过大或格式不对，请缩短后再试。",
-        "What was sent is too large or no form: shorten it and repeat.",
+        "提交的内容过大，请缩短后再试。",
+        "What was sent is too large: shorten it and repeat.",
+    ),
+    "form-kind": (
+        "提交的内容无法读取：请重新打开本页再试；程序须发送 JSON 对象，其值为文字、数字、true 或 false。",
+        "What was sent cannot be read: open the page again and repeat; a program sends a JSON object whose values are "
+        "texts, numbers, true or false.",
     ),
 }
 
@@ -290,6 +303,10 @@ _MISSING = frozenset(
         "no-revision",
         "no-backup",
         "no-questionnaire",
+        "no-booking",
+        "no-bake",
+        "no-token",
+        "no-suggestion",
     }
 )
 
@@ -312,7 +329,7 @@ class PeopleError(ValueError):
 
     @property
     def missing(self) -> bool:
-        """Whether what was asked for is not there: of a page, 404."""
+        """Whether what was asked for is not there: 404 where the address names it."""
         return self.key in _MISSING
 
     def text(self, language: str) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import asdict, astuple, dataclass, replace
-from datetime import datetime
+from datetime import UTC, datetime
 
-from sqlalchemy import Connection, func, select, update
+from sqlalchemy import ColumnElement, Connection, Select, func, select, update
 
 from hall_app.house.people.credentials import new_id
 from hall_app.house.people.database import Ledger, tables
@@ -57,7 +57,9 @@ class Plan:
         ):
             raise PeopleError("occasion-text")
         kind = "visit" if self.kind == "visit" else "activity"
-        return replace(self, kind=kind, title_zh=titles[0], title_en=titles[1])
+        # SQLite keeps the clock of what it is given and not its zone.
+        times = {"begins": self.begins.astimezone(UTC), "ends": self.ends.astimezone(UTC)}
+        return replace(self, kind=kind, title_zh=titles[0], title_en=titles[1], **times)
 
 
 @dataclass(frozen=True)
@@ -87,19 +89,44 @@ class Occasions:
     def __init__(self, ledger: Ledger) -> None:
         self._ledger = ledger
 
-    def to_come(self, kind: str = "", *, past: bool = False, off: bool = False) -> tuple[Occasion, ...]:
+    def to_come(
+        self,
+        kind: str = "",
+        *,
+        past: bool = False,
+        off: bool = False,
+        start: int = 0,
+        most: int | None = None,
+    ) -> tuple[Occasion, ...]:
         """Those that are not over, of that kind or all, the next first; past: over or off, the last first.
 
-        off: those to come that were called off as well, for calendars that have them already.
+        off: those to come that were called off as well, for calendars that have them already; start, most: a part of
+        the list, from that one on (from 0).
         """
-        table, moment = tables.occasion, now()
-        open_now = table.c.ends > moment
-        open_now = open_now if off else open_now & table.c.cancelled.is_(None)
-        query = select(table).where(~open_now if past else open_now)
-        query = query.where(table.c.kind == kind) if kind else query
+        table = tables.occasion
         order = table.c.begins.desc() if past else table.c.begins
+        query = select(table).where(*_listed(kind, past=past, off=off)).order_by(order, table.c.id)
+        return self._found(query.offset(start).limit(most))
+
+    def between(self, first: datetime, end: datetime, kind: str = "") -> tuple[Occasion, ...]:
+        """Those that begin from `first` on and before `end`, over or not, none that was called off, in order."""
+        table = tables.occasion
+        query = select(table).where(
+            table.c.begins >= first.astimezone(UTC), table.c.begins < end.astimezone(UTC)
+        )
+        query = query.where(table.c.cancelled.is_(None)).order_by(table.c.begins, table.c.id)
+        return self._found(query.where(table.c.kind == kind) if kind else query)
+
+    def beginnings(self, kind: str = "") -> tuple[datetime, ...]:
+        """When those that are not over begin, in order."""
+        table = tables.occasion
+        query = select(table.c.begins).where(*_listed(kind)).order_by(table.c.begins)
         with self._ledger.read() as connection:
-            rows = connection.execute(query.order_by(order, table.c.id).limit(500)).all()
+            return tuple(in_utc(row.begins) for row in connection.execute(query))
+
+    def _found(self, query: Select) -> tuple[Occasion, ...]:
+        with self._ledger.read() as connection:
+            rows = connection.execute(query).all()
             waiting = _waiting(connection)
         return tuple(_occasion(row, waiting.get(row.id, 0)) for row in rows)
 
@@ -148,6 +175,14 @@ class Occasions:
             row = update(table).where(table.c.id == key, table.c.cancelled.is_(None)).values(cancelled=now())
             if not connection.execute(row).rowcount:
                 raise PeopleError("no-occasion")
+
+
+def _listed(kind: str, *, past: bool = False, off: bool = False) -> tuple[ColumnElement[bool], ...]:
+    """What a list holds, as `to_come` tells it."""
+    table = tables.occasion
+    open_now = table.c.ends > now()
+    open_now = open_now if off else open_now & table.c.cancelled.is_(None)
+    return (~open_now if past else open_now, *((table.c.kind == kind,) if kind else ()))
 
 
 def _waiting(connection: Connection) -> dict[str, int]:

@@ -46,10 +46,11 @@ class Revisions:
             connection.execute(table.insert().values(at=now(), **row))
             yield
 
-    def of(self, exhibit: str, *, most: int = 100) -> tuple[Revision, ...]:
-        """The newest first."""
+    def of(self, exhibit: str, *, most: int = 100, start: int = 0) -> tuple[Revision, ...]:
+        """The newest first, from that one on (from 0)."""
         table = tables.revision
-        query = select(table).where(table.c.exhibit == exhibit).order_by(table.c.id.desc()).limit(most)
+        query = select(table).where(table.c.exhibit == exhibit).order_by(table.c.id.desc())
+        query = query.offset(start).limit(most)
         with self._ledger.read() as connection:
             return tuple(_revision(row) for row in connection.execute(query).all())
 

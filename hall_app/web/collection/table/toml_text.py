@@ -7,11 +7,12 @@ tomlkit writes it, and is not believed: what it wrote is read again by another r
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, MutableMapping
 from typing import Any
 
 from hall_app.content.schema.values import Bilingual
 from hall_app.web.collection.record import LANGUAGES
+from hall_app.web.collection.table.columns import key
 from hall_app.web.collection.table.difference import Change
 
 __all__ = ["EditError", "edited"]
@@ -27,9 +28,13 @@ def edited(text: str, changes: Iterable[Change]) -> str:
     from tomlkit.exceptions import TOMLKitError
 
     changes = tuple(changes)
-    meant = tomllib.loads(text)
+    meant = _read(text)
     for change in changes:
-        _apply(meant, change, dict, dict)
+        try:
+            _apply(meant, change, dict, dict)
+        except (TypeError, LookupError, AttributeError) as error:
+            where = key(change.path)
+            raise EditError(f"{where}: what stands there is of another form") from error
     try:
         document = tomlkit.parse(text)
         for change in changes:
@@ -44,9 +49,21 @@ def edited(text: str, changes: Iterable[Change]) -> str:
         ValueError,
         LookupError,
         AttributeError,
+        ArithmeticError,
+        RecursionError,
     ) as error:
         raise EditError(f"it cannot be rewritten ({type(error).__name__})") from error
     raise EditError("rewritten, it would say something else")
+
+
+def _read(text: str) -> dict[str, Any]:
+    """Raises EditError for what is TOML and cannot be read even so, tomllib.TOMLDecodeError for what is none."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except (ValueError, ArithmeticError, RecursionError) as error:
+        raise EditError(f"cannot be read ({type(error).__name__})") from error
 
 
 def _apply(container: Any, change: Change, new_table: Any, new_pair: Any) -> None:
@@ -65,9 +82,9 @@ def _apply(container: Any, change: Change, new_table: Any, new_pair: Any) -> Non
         del container[last]
     elif not isinstance(change.value, Bilingual):
         container[last] = change.value
-    elif last in container:
+    elif isinstance(container, MutableMapping) and isinstance(container.get(last), MutableMapping):
         for language in LANGUAGES:
-            if container[last][language] != (text := getattr(change.value, language)):
+            if container[last].get(language) != (text := getattr(change.value, language)):
                 container[last][language] = text
     else:
         container[last] = _pair(change.value, new_pair)

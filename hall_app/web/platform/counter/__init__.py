@@ -1,8 +1,8 @@
 """The counter: what all pages with forms have in common.
 
 asking: what a page is asked and what it answers; cookies: of sessions; guard: whether a form is one of ours; pace: how
-often one may try; fields: forms as HTML; counter: pages and acts put at their addresses, refusals told; signing_in:
-what both counters let in by.
+often one may try; fields: forms as HTML; leaves: long lists on pages; counter: pages and acts put at their addresses,
+refusals told; signing_in: what both counters let in by.
 """
 
 from hall_app.web.platform.counter.asking import Asking, Brought, Download, Guest, Moved, Page, Shown
@@ -10,6 +10,7 @@ from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
 from hall_app.web.platform.counter.counter import STATUS, Act, Answer, Counter, View
 from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
 from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of, is_whole
+from hall_app.web.platform.counter.leaves import leaf_asked, leaf_ways
 from hall_app.web.platform.counter.pace import RATES, Pace
 from hall_app.web.platform.counter.signing_in import address_field, sign_in_fields, signed_in
 
@@ -39,6 +40,8 @@ __all__ = [
     "form",
     "form_of",
     "is_whole",
+    "leaf_asked",
+    "leaf_ways",
     "sign_in_fields",
     "signed_in",
     "told_day",

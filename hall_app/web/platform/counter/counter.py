@@ -68,6 +68,8 @@ STATUS = {
     "draft-changed": 409,
     "occasion-changed": 409,
     "undo-changed": 409,
+    "exhibit-taken": 409,
+    "address-taken": 409,
 }
 _REFUSED = ("请再试一次", "Please try again")
 _NOWHERE = ("没有这一页", "There is no such page")
@@ -83,6 +85,7 @@ class Counter:
 
     def __init__(self, app: FastAPI, house: House, people: People, kind: Kind, pace: Pace) -> None:
         self._app, self.house, self.people, self.kind, self.pace = app, house, people, kind, pace
+        self._pages: set[str] = set()
 
     def page(self, path: str, view: View) -> None:
         """Answer GET."""
@@ -90,6 +93,7 @@ class Counter:
         async def asked(request: Request) -> Response:
             return await run_in_threadpool(self._answer, request, None, view, view)
 
+        self._pages.add(path)
         self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
 
     def handed(self, path: str, view: View) -> None:
@@ -108,8 +112,21 @@ class Counter:
 
         self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
 
-    def act(self, path: str, act: Act, again: View, takes: Takes = PLAIN) -> None:
-        """Answer POST by `act`; what is refused shows the page `again`, with the reason."""
+    def act(
+        self,
+        path: str,
+        act: Act,
+        again: View,
+        takes: Takes = PLAIN,
+        on: str = "",
+        before: Callable[[Asking], None] | None = None,
+    ) -> None:
+        """Answer POST by `act`; what is refused shows the page `again`, with the reason.
+
+        on: path of the page that its form is on, else the nearest page above it; who asks for the act itself, by a
+        mark or a page loaded again, is led there. Pages are added before the acts of the same path. before: raises
+        PeopleError for who may not, ahead of a large form's reading.
+        """
 
         async def asked(request: Request) -> Response:
             form: Form | None = None
@@ -118,6 +135,8 @@ class Counter:
                 # Nobody's megabytes are read but those of who is signed in.
                 if takes.largest > PLAIN.largest and await run_in_threadpool(self.guest, request) is None:
                     return await run_in_threadpool(self._answer, request, None, again, again)
+                if takes.largest > PLAIN.largest and before is not None:
+                    await run_in_threadpool(before, await run_in_threadpool(self.asking, request))
                 form = await form_of(request, takes)
                 return await run_in_threadpool(self._answer, request, form, act, again)
             except PeopleError as error:
@@ -129,6 +148,24 @@ class Counter:
                     form.close()
 
         self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
+        if path not in self._pages:
+            self._lead(path, on or self._above(path))
+
+    def _above(self, path: str) -> str:
+        """The nearest page above a path."""
+        while path and path not in self._pages:
+            path = path.rpartition("/")[0]
+        return path or "/"
+
+    def _lead(self, path: str, to: str) -> None:
+        """Answer GET by the way to another page."""
+
+        async def asked(request: Request) -> Response:
+            names = {name: quote(str(value), safe="") for name, value in request.path_params.items()}
+            lang = self._language(request, "", None)
+            return RedirectResponse(f"{to.format(**names)}?lang={lang}", 303, headers=_HEADERS)
+
+        self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
 
     def guest(self, request: Request) -> Guest | None:
         """Who is signed in. Raises StoreError."""
@@ -164,7 +201,8 @@ class Counter:
                     check_form(given.fields.get(SEAL, ""), asking.seal)
                 answer = act(asking)
             except PeopleError as error:
-                status = 404 if given is None and error.missing else STATUS.get(error.key, 400)
+                missing = error.missing and (given is None or bool(asking.names))
+                status = 404 if missing else STATUS.get(error.key, 400)
                 answer = self._refused(replace(asking, refusal=error.text(asking.lang)), status, again)
         except StoreError as error:
             _log.warning("%s", error)

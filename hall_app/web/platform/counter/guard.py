@@ -59,14 +59,14 @@ async def form_of(request: Request, takes: Takes = PLAIN) -> Form:
     if takes.files and kind == _MULTIPART:
         return await _with_files(request, takes)
     if kind != "application/x-www-form-urlencoded":
-        raise PeopleError("form-size")
+        raise PeopleError("form-kind")
     body = bytearray()
     async for part in _bounded(request, takes):
         body += part
     try:
         pairs = parse_qsl(body.decode("utf-8"), keep_blank_values=True, max_num_fields=_FIELDS)
     except ValueError:
-        raise PeopleError("form-size") from None
+        raise PeopleError("form-kind") from None
     return _whole(Form(_fields(pairs)))
 
 
@@ -81,8 +81,10 @@ async def _with_files(request: Request, takes: Takes) -> Form:
     )
     try:
         items = (await parser.parse()).multi_items()
-    except (MultiPartException, ValueError, KeyError):  # of the library that it stands on
-        raise PeopleError("form-size") from None
+    except (MultiPartException, ValueError, KeyError) as error:  # of the library that it stands on
+        if isinstance(error, PeopleError):
+            raise
+        raise PeopleError("form-kind") from None
     plain = [(name, value) for name, value in items if isinstance(value, str)]
     brought = [
         Brought(name, value.filename or "", value.file, value.size or 0)
@@ -96,7 +98,7 @@ def _whole(form: Form) -> Form:
     """Raises PeopleError."""
     if not all(map(is_whole, form.fields.values())):
         form.close()
-        raise PeopleError("form-size")
+        raise PeopleError("form-kind")
     return form
 
 

@@ -7,6 +7,7 @@ the form, the API answers 401.
 from __future__ import annotations
 
 import json
+from functools import partial
 from typing import Any
 
 from fastapi import FastAPI, Request
@@ -65,7 +66,9 @@ class Access:
             )
 
         page = self._staff(one.act, one.page)
-        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page, one.takes)
+        on = f"/office/{one.back}" if "/" not in one.path else ""
+        may = partial(self._check, act=one.act)
+        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page, one.takes, on, may)
         self._program("POST", one.path, one.act, one.do, one.takes)
 
     def _staff(self, act: str, view: View) -> Act:
@@ -158,7 +161,7 @@ def _fields(kind: str, body: bytes) -> dict[str, str]:
     except (ValueError, RecursionError):
         given = None
     if not isinstance(given, dict):
-        raise PeopleError("form-size")
+        raise PeopleError("form-kind")
     fields = {}
     for name, value in given.items():
         if isinstance(value, list) and all(isinstance(one, str) for one in value):
@@ -166,7 +169,7 @@ def _fields(kind: str, body: bytes) -> dict[str, str]:
         if isinstance(value, bool):
             value = "on" if value else ""
         if not isinstance(value, str | int | float) or not is_whole(str(value)):
-            raise PeopleError("form-size")
+            raise PeopleError("form-kind")
         fields[name] = str(value)
     return fields
 

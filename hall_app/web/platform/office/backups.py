@@ -8,6 +8,7 @@ import threading
 from datetime import UTC, datetime
 from html import escape
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 from hall_app.house.people import PeopleError
@@ -180,7 +181,7 @@ class _Rooms:
 
     def restored_page(self, asking: Asking, came: dict[str, Any]) -> Shown:
         word = asking.word
-        command = f"hall serve --content {came['content']} --data {came['data']}"
+        command = f"hall serve --content {quote(str(came['content']))} --data {quote(str(came['data']))}"
         told = word(
             f"已校验并恢复：{came['people']} 个账户，{came['answers']} 份答卷。停止当前展厅后，用此命令打开：",
             f"Checked and restored: {came['people']} accounts, {came['answers']} answers. End this hall; open it by:",

@@ -11,7 +11,16 @@ from hall_app.web.platform.office.deeds import Deed, Reading
 
 __all__ = ["description"]
 
-_REFUSED = {"$ref": "#/components/responses/refused"}
+_REFUSED = {
+    "400": "Refused as it stands, or no JSON object of texts, numbers and truths",
+    "401": "Nobody is signed in",
+    "403": "The role does not allow it, or seal or origin is wrong",
+    "404": "What the address names is not there",
+    "409": "The name or address is taken, or what is changed is another by now than it was when it was read",
+    "413": "Too large",
+    "429": "Too often: the text says for how many seconds",
+    "503": "Accounts or answers cannot be reached at the moment",
+}
 _JSON = "application/json"
 _VALUE = {
     "anyOf": [
@@ -52,11 +61,13 @@ def description(readings: Iterable[Reading], deeds: Iterable[Deed]) -> dict[str,
                 "origin": _header("Origin", "scheme and host of the hall"),
             },
             "responses": {
-                "refused": {
-                    "description": "Refused, with the reason",
-                    "content": {_JSON: {"schema": _refusal()}},
+                f"refused-{status}": {
+                    "description": words,
+                    "content": {_JSON: {"schema": {"$ref": "#/components/schemas/refusal"}}},
                 }
+                for status, words in _REFUSED.items()
             },
+            "schemas": {"refusal": _refusal()},
             "securitySchemes": {"session": {"type": "apiKey", "in": "cookie", "name": "hall-office"}},
         },
         "security": [{"session": []}],
@@ -76,8 +87,7 @@ def _operation(key: str, told: str, act: str, names: Iterable[str], query: Any) 
     answers: dict[str, Any] = {
         "200": {"description": "Done", "content": {_JSON: {"schema": {"type": ["object", "array"]}}}}
     }
-    for status in ("400", "401", "403", "404", "409", "413", "429", "503"):
-        answers[status] = _REFUSED
+    answers |= {status: {"$ref": f"#/components/responses/refused-{status}"} for status in _REFUSED}
     return {
         "operationId": re.sub("[^a-z]+", "-", key).strip("-"),
         "summary": told or (ACTS[act].en if act else ""),

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from datetime import UTC, datetime, timedelta
 from html import escape
 
 from hall_app.house.people.records import Occasion
-from hall_app.web.platform.counter import Asking, Page, Shown, told_day, told_time
+from hall_app.web.platform.counter import Asking, Page, Shown, leaf_asked, leaf_ways, told_day, told_time
 
-__all__ = ["activities_page", "address_of", "left_of", "visit_page"]
+__all__ = ["LISTED", "activities_page", "address_of", "bounds_of", "left_of", "month_of", "visit_page"]
+
+LISTED = 60  # activities on a page
 
 
 def address_of(occasion: Occasion) -> str:
@@ -29,7 +32,21 @@ def left_of(asking: Asking, occasion: Occasion) -> str:
     return word("已满", "Full") + (word("，", ", ") + waiting if waiting else "")
 
 
-def activities_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
+def month_of(at: datetime) -> str:
+    """2026-12 on the house's own clock."""
+    return f"{at.astimezone():%Y-%m}"
+
+
+def bounds_of(month: str) -> tuple[datetime, datetime]:
+    """Its first moment on the house's own clock, and the next month's."""
+    first = datetime.fromisoformat(f"{month}-01")
+    if month == "9999-12":
+        return first.astimezone(), datetime.max.replace(tzinfo=UTC)
+    return first.astimezone(), (first + timedelta(days=32)).replace(day=1).astimezone()
+
+
+def activities_page(asking: Asking, found: Iterable[Occasion], *, more: bool) -> Shown:
+    """found: those of the page that is asked for; more: whether there is a next one."""
     word = asking.word
     title = word("活动", "Activities")
     lead = word(
@@ -45,8 +62,11 @@ def activities_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
     )
     listed = f'<ol class="programme">{cards}</ol>' if cards else f"<p>{none}</p>"
     ways = f'<p class="doors">{calendar if cards else ""}{visit}</p>'
-    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed}'
-    return Shown(Page(title, main, "activities"), path="/activities")
+    page = leaf_asked(asking)
+    pages = leaf_ways(asking, "/activities", page, more=more)
+    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed}{pages}'
+    query = {"page": str(page)} if page > 1 else {}
+    return Shown(Page(title, main, "activities", query), path="/activities")
 
 
 def _card(asking: Asking, one: Occasion) -> str:
@@ -59,7 +79,8 @@ def _card(asking: Asking, one: Occasion) -> str:
 <p class="quiet">{left_of(asking, one)}</p></li>"""
 
 
-def visit_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
+def visit_page(asking: Asking, found: Iterable[Occasion], month: str, months: Iterable[str]) -> Shown:
+    """month: 2026-12, whose slots are found, "" for none; months: those that have any."""
     word = asking.word
     title = word("预约参观", "Book a visit")
     lead = word(
@@ -78,8 +99,14 @@ def visit_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
     none = word(
         "目前没有可预约的时段，请过些时候再来看看。", "No hours are offered at present: look in again later."
     )
-    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{listed or f"<p>{none}</p>"}'
-    return Shown(Page(title, main, "visit"), path="/visit")
+    others = "".join(
+        f'<a href="{asking.address("/visit", month=one)}"{" aria-current=page" if one == month else ""}>{one}</a>'
+        for one in months
+    )
+    ways = f'<nav class="doors" aria-label="{word("月份", "Months")}">{others}</nav>' if others else ""
+    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed or f"<p>{none}</p>"}'
+    query = {"month": month} if asking.query.get("month") and month else {}
+    return Shown(Page(title, main, "visit", query), path="/visit")
 
 
 def _slot(asking: Asking, one: Occasion) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from hall_app.web.platform.counter import Asking, Counter, Download, Moved, Shown
+from hall_app.web.platform.counter import Asking, Counter, Download, Moved, Shown, leaf_asked
 from hall_app.web.platform.programme.calendar import calendar_file
-from hall_app.web.platform.programme.lists import activities_page, visit_page
+from hall_app.web.platform.programme.lists import LISTED, activities_page, bounds_of, month_of, visit_page
 from hall_app.web.platform.programme.occasion import OccasionPages
+from survey.store.database import now
 
 __all__ = ["add_programme"]
 
@@ -15,10 +16,16 @@ def add_programme(counter: Counter) -> None:
     people, pages = counter.people, OccasionPages(counter)
 
     def activities(asking: Asking) -> Shown:
-        return activities_page(asking, people.occasions.to_come("activity"))
+        start = (leaf_asked(asking) - 1) * LISTED
+        found = people.occasions.to_come("activity", start=start, most=LISTED + 1)
+        return activities_page(asking, found[:LISTED], more=len(found) > LISTED)
 
     def visit(asking: Asking) -> Shown:
-        return visit_page(asking, people.occasions.to_come("visit"))
+        months = tuple(dict.fromkeys(map(month_of, people.occasions.beginnings("visit"))))
+        asked = asking.query.get("month", "")
+        month = asked if asked in months else months[0] if months else ""
+        found = people.occasions.between(*bounds_of(month), "visit") if month else ()
+        return visit_page(asking, [one for one in found if one.plan.ends > now()], month, months)
 
     def all_activities(asking: Asking) -> Download:
         return calendar_file(asking, people.occasions.to_come("activity", off=True), "activities.ics")

@@ -10,7 +10,7 @@ from hall_app.web.platform.office.collection.bakes import Bakes
 from hall_app.web.platform.office.collection.desk import Desk
 from hall_app.web.platform.office.collection.exhibit import Exhibits
 from hall_app.web.platform.office.collection.files import MOST_FILES, Uploads
-from hall_app.web.platform.office.collection.history import History
+from hall_app.web.platform.office.collection.history import LISTED, History
 from hall_app.web.platform.office.collection.keys import keys_of
 from hall_app.web.platform.office.collection.listing import Listing
 from hall_app.web.platform.office.collection.place import Places
@@ -53,7 +53,7 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         ),
         Reading(f"{_ONE}/preview", "preview", previews.told, previews.page),
         Reading(f"{_ONE}/place", "place", places.where, places.page),
-        Reading(f"{_ONE}/history", "draft", history.all, history.page),
+        Reading(f"{_ONE}/history", "draft", history.all, history.page, {"page": f"from 1, of {LISTED} each"}),
         Reading("bakes", "bake", bakes.all, bakes.page),
     )
     titles = {"id": "name of its folder", "title.zh": "Chinese", "title.en": "English"}
@@ -75,7 +75,7 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         Deed(f"{_ONE}/text", "draft", exhibits.save_text, _ONE, exhibits.text_page, takes=_TEXT, fields=text),
         Deed(f"{_ONE}/upload", "draft", uploads.bring, _ONE, uploads.page, takes=_FILES, fields=upload),
         Deed(f"{_ONE}/remove", "draft", uploads.remove, _ONE, exhibits.page, fields={"file": "its name"}),
-        Deed(f"{_ONE}/drop", "draft", exhibits.drop, "collection", exhibits.page),
+        Deed(f"{_ONE}/drop", "draft", exhibits.drop, "collection", exhibits.page, fields=seen),
         Deed(
             f"{_ONE}/place", "place", places.put, f"{_ONE}/place", places.page, fields=place | {"tag": _TAG}
         ),

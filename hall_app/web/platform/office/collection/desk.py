@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable, Mapping
 from html import escape
-from typing import Any
+from typing import Any, NoReturn
 
 from hall_app.content.files import TEXTS
 from hall_app.content.problems import Problem
@@ -41,10 +41,10 @@ class Desk:
         return key
 
     def table(self, key: str) -> dict[str, Any]:
-        """Its exhibit.toml as it is to be, empty where it is no TOML."""
+        """Its exhibit.toml as it is to be, empty where it cannot be read."""
         try:
-            return tomllib.loads(self.drafts.text(key, TOML))
-        except tomllib.TOMLDecodeError:
+            return _table(self.drafts.text(key, TOML))
+        except PeopleError:
             return {}
 
     def title(self, key: str, lang: str) -> str:
@@ -88,10 +88,7 @@ class Desk:
         """A whole text file into the draft. Raises PeopleError, also for an exhibit.toml that is no TOML."""
         data = self.drafts.encoded(key, name, text)
         if name == TOML:
-            try:
-                tomllib.loads(data.decode("utf-8-sig"))
-            except tomllib.TOMLDecodeError as error:
-                raise PeopleError("content-file", why=f"{TOML}: {error}") from None
+            _table(data.decode("utf-8-sig"))
         self._write(asking, key, {name: data}, {} if tag is None else {name: tag})
 
     def _write(
@@ -111,14 +108,61 @@ class Desk:
         except OSError as error:
             raise PeopleError("content-write", why=error.strerror or str(error)) from error
 
+    def drop(self, asking: Asking, key: str, seen: str) -> None:
+        """Forget the draft. seen: its mark as the page showed it.
+
+        Raises PeopleError where it is another by now, and where it moves the exhibit and who drops it may not place it:
+        a curator's placing would be undone.
+        """
+        with self.drafts.lock:
+            self.drafts.see(key, seen)
+            if self.moved(key) and not asking.person.may("place"):
+                self._refuse_place(asking)
+            self.people.note(asking.person.id, "draft", key)
+            self.drafts.drop(key)
+        self.publication.tidy()
+
+    def moved(self, key: str) -> bool:
+        """Whether its draft has it elsewhere than the hall or, where the hall has none, than where it began."""
+        there = self.drafts.hall_text(key, TOML)
+        before = self._hall(key).get("place") if there else self.first_place()
+        return self.drafts.of(key) is not None and self.table(key).get("place") != before
+
+    def _hall(self, key: str) -> dict[str, Any]:
+        """Its exhibit.toml in the hall, empty where it cannot be read."""
+        try:
+            return _table(self.drafts.hall_text(key, TOML))
+        except PeopleError:
+            return {}
+
+    def first_place(self) -> dict[str, float]:
+        """Where a new exhibit stands until it is placed."""
+        start = self.house.content.hall.start
+        return {"x": round(start.x + 1.5, 4), "z": round(start.z, 4), "facing": 0.0}
+
+    def _refuse_place(self, asking: Asking) -> NoReturn:
+        self.people.refuse(asking.person.id, "place", asking.path)
+        raise PeopleError("not-allowed")
+
     def _check_place(self, asking: Asking, key: str, toml: bytes | None) -> None:
         """Raises PeopleError, and writes it down, where someone moves an exhibit who may not."""
-        before = self.table(key)
+        before = self.table(key) or self._hall(key)
         if toml is None or not before or asking.person.may("place"):
             return
-        if tomllib.loads(toml.decode("utf-8-sig")).get("place") != before.get("place"):
-            self.people.refuse(asking.person.id, "place", asking.path)
-            raise PeopleError("not-allowed")
+        if _table(toml.decode("utf-8-sig")).get("place") != before.get("place"):
+            self._refuse_place(asking)
+
+
+def _table(text: str) -> dict[str, Any]:
+    """An exhibit.toml. Raises PeopleError for what is no TOML, and for what nobody can read even so."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise PeopleError("content-file", why=f"{TOML}: {error}") from None
+    except (ValueError, ArithmeticError, RecursionError) as error:
+        # A number of thousands of digits, thousands of brackets: tomllib gives up in its own ways.
+        why = f"{TOML}: cannot be read ({type(error).__name__}) – shorten its numbers and lists"
+        raise PeopleError("content-file", why=why) from None
 
 
 def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:

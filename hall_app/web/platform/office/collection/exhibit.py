@@ -80,9 +80,7 @@ class Exhibits:
 
     def drop(self, asking: Asking) -> dict[str, Any]:
         key = self._desk.key(asking)
-        self._desk.people.note(asking.person.id, "draft", key)
-        self._desk.drafts.drop(key)
-        self._desk.publication.tidy()
+        self._desk.drop(asking, key, asking.form.get("seen", ""))
         return {"id": key}
 
     def _keys(self, table: dict[str, Any]) -> tuple[Key, ...]:
@@ -164,7 +162,9 @@ class Exhibits:
             for name in stale
             if name in TEXT_FILES
         )
-        deeds = button(asking, "drop", f"{at}/drop", word("放弃草稿", "Drop the draft"), hidden={})
+        deeds, seen = "", {"seen": desk.drafts.mark(key)}
+        if asking.person.may("place") or not desk.moved(key):
+            deeds = button(asking, "drop", f"{at}/drop", word("放弃草稿", "Drop the draft"), hidden=seen)
         if asking.person.may("publish"):
             deeds = publish_form(desk, asking, key) + deeds
         told = word("草稿，尚未在展厅中显示：", "A draft, not in the hall yet:")
@@ -177,7 +177,7 @@ class Exhibits:
         for name in sorted(self._desk.drafts.files(key)):
             query = {"file": name} if name in TEXT_FILES else {"name": name}
             way = asking.address(f"{at}/{'text' if name in TEXT_FILES else 'file'}", **query)
-            size = self._desk.drafts.path(key, name).stat().st_size
+            size = self._size(key, name)
             goes = ""
             if name not in TEXT_FILES:
                 goes = button(
@@ -196,6 +196,13 @@ class Exhibits:
             "A text file opens whole in an editor; comments and order stay.",
         )
         return part("files", title, f'<p class="quiet">{told}</p><ul class="rows">{"".join(lines)}</ul>')
+
+    def _size(self, key: str, name: str) -> int:
+        """[bytes], 0 for a file that the shelf has lost."""
+        try:
+            return self._desk.drafts.path(key, name).stat().st_size
+        except PeopleError:
+            return 0
 
     def text_page(self, asking: Asking) -> Shown:
         desk, key, word = self._desk, self._desk.key(asking), asking.word

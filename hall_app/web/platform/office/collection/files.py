@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import posixpath
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from hall_app.content.files import BAKED, replace_file, whole_digest
+from hall_app.content.files import BAKED, TEXTS, replace_file, whole_digest
 from hall_app.content.views.scene import media_type
 from hall_app.house.drafts import LARGEST, TEXT_FILES, USES, Taken, beside, portrait, shape, take_in
 from hall_app.house.people import PeopleError
@@ -40,10 +40,10 @@ class Uploads:
     def bring(self, asking: Asking) -> dict[str, Any]:
         """Into the draft, and named in exhibit.toml for its use."""
         desk, key, use = self._desk, self._desk.key(asking), asking.form.get("use", "picture")
-        brought = [one for one in asking.files if one.name or one.size]
-        if not brought or use not in USES:
+        came = [one for one in asking.files if one.name or one.size]
+        if not came or use not in USES:
             raise PeopleError("no-upload")
-        taken = [take_in(one.name, one.file, one.size, use) for one in brought]
+        taken = [take_in(one.name, one.file, one.size, use) for one in came]
         with desk.drafts.lock:
             names = desk.drafts.files(key)
             table = desk.table(key)
@@ -65,8 +65,29 @@ class Uploads:
                     count += 1
                 else:
                     changes += _as_model(table, use, name)
+            if use not in _MEDIA:
+                files |= dict.fromkeys(self._replaced(key, table, use, names))
             desk.change(asking, key, changes, files=files)
-        return {"id": key, "files": {name: one.told for name, one in zip(files, taken, strict=True)}}
+        brought = (name for name, data in files.items() if data is not None)
+        return {"id": key, "files": {name: one.told for name, one in zip(brought, taken, strict=True)}}
+
+    def _replaced(self, key: str, table: Mapping[str, Any], use: str, names: Mapping[str, str]) -> list[str]:
+        """Files it was made of that nothing names once another has their place: the check would refuse them."""
+        models, scan = table.get("models"), table.get("scan")
+        models = models if isinstance(models, Mapping) else {}
+        gone = [scan, *(models.values() if use == "scan" else [models.get(use)])]
+        kept = {part: value for part, value in table.items() if part not in ("models", "scan")}
+        if use != "scan":
+            kept["models"] = {part: value for part, value in models.items() if part != use}
+        drafts, named = self._desk.drafts, set(_texts_in(kept))
+        texts = [drafts.text(key, name) for name in TEXTS.values()]
+        return [
+            name
+            for name in gone
+            if isinstance(name, str)
+            and name in names.keys() - named
+            and not any(name in text for text in texts)
+        ]
 
     def remove(self, asking: Asking) -> dict[str, Any]:
         """A file out of the draft, and the medium that shows it."""
@@ -173,6 +194,15 @@ def _as_model(table: Mapping[str, Any], use: str, name: str) -> list[Change]:
     return [Change((one,), None, None) for one in gone] + [Change(("models", use), None, name)]
 
 
+def _texts_in(value: Any) -> Iterator[str]:
+    """All texts of a table, however deep."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | list):
+        for one in value.values() if isinstance(value, Mapping) else value:
+            yield from _texts_in(one)
+
+
 def file_address(asking: Asking, key: str, name: str) -> str:
     """Where the office shows a file of an exhibit."""
     return escape(asking.address(f"/office/collection/{key}/file", name=name))
@@ -236,7 +266,7 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
     for number, one in enumerate(media if isinstance(media, list) else []):
         if not isinstance(one, dict):
             continue
-        names = [one["file"]] if one.get("file") else list(one.get("files") or ())
+        names = _named(one)
         at = f"/office/collection/{key}"
         keys = media_keys(number) if one.get("kind") != "picture" else media_keys(number)[:2]
         words = form(
@@ -250,15 +280,15 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
                 "remove",
                 f"{at}/remove",
                 word("移除", "Remove"),
-                about=str(names[0]),
+                about=names[0],
                 hidden={"file": names[0]},
             )
             if own and len(names) == 1
             else ""
         )
         told = one.get("caption") or one.get("alt")
-        words_of = str(told.get(asking.lang, "")) if isinstance(told, dict) else ""
-        named = f'<code class="quiet">{escape(", ".join(map(str, names)))}</code>'
+        words_of = _word_of(told, asking.lang)
+        named = f'<code class="quiet">{escape(", ".join(names))}</code>'
         title = f"<b>{escape(words_of or str(number + 1))}</b> · {named}"
         parts.append(
             f"<li>{shown_medium(asking, key, one, names)}"
@@ -272,6 +302,18 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
     parts += [f'<li class="drawn">{drawn}</li>'] if drawn else []
     listed = f'<ul class="media">{"".join(parts)}</ul>' if parts else ""
     return part("media", title, f'{listed}<div class="desk">{_upload_form(asking, key)}</div>')
+
+
+def _named(one: Mapping[str, Any]) -> list[str]:
+    """The files of a medium as exhibit.toml has it; what is no name there is none."""
+    given = one["file"] if one.get("file") else one.get("files")
+    listed = given if isinstance(given, list) and not one.get("file") else [given]
+    return [name for name in listed if isinstance(name, str)]
+
+
+def _word_of(pair: Any, lang: str) -> str:
+    text = pair.get(lang) if isinstance(pair, Mapping) else None
+    return text if isinstance(text, str) else ""
 
 
 def drawn_model(asking: Asking, key: str, name: str, told: str = "") -> str:
@@ -301,16 +343,15 @@ def drawn_model(asking: Asking, key: str, name: str, told: str = "") -> str:
 <figcaption><code>{escape(name)}</code>{told}</figcaption></figure>'''
 
 
-def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[Any]) -> str:
+def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[str]) -> str:
     """A medium as HTML, from the draft's own files."""
-    if not names or not all(isinstance(name, str) for name in names):
+    if not names:
         return '<span class="blank"></span>'
-    alt = one.get("alt")
-    words = escape(str(alt.get(asking.lang, ""))) if isinstance(alt, dict) else ""
+    words = escape(_word_of(one.get("alt"), asking.lang))
     if one.get("kind") == "picture":
         return f'<img src="{file_address(asking, key, names[0])}" alt="{words}" loading="lazy">'
     sources = "".join(
-        f'<source src="{file_address(asking, key, name)}" type="{media_type(name, one.get("kind", ""))}">'
+        f'<source src="{file_address(asking, key, name)}" type="{media_type(name, str(one.get("kind", "")))}">'
         for name in names
     )
     label = words or escape(names[0])

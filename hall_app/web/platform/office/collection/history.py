@@ -9,7 +9,7 @@ from typing import Any
 from hall_app.house.drafts import TEXT_FILES
 from hall_app.house.people import PeopleError
 from hall_app.house.people.records import Revision
-from hall_app.web.platform.counter import Asking, Shown, button, told_time
+from hall_app.web.platform.counter import Asking, Shown, button, leaf_asked, leaf_ways, told_time
 from hall_app.web.platform.office.collection.desk import Desk, refusal
 from hall_app.web.platform.office.collection.exhibit import difference
 from hall_app.web.platform.office.deeds import number_in
@@ -17,6 +17,7 @@ from hall_app.web.platform.office.table import office_page
 
 __all__ = ["History"]
 
+LISTED = 100  # changes on a page
 _LONGEST = 200_000  # [bytes] of a text that is compared
 
 
@@ -45,19 +46,23 @@ class History:
                 "act": one.act,
                 "files": {name: list(pair) for name, pair in one.files.items()},
             }
-            for one in self._revisions(asking)
+            for one in self._revisions(asking)[0]
         ]
 
-    def _revisions(self, asking: Asking) -> tuple[Revision, ...]:
+    def _revisions(self, asking: Asking) -> tuple[tuple[Revision, ...], bool]:
+        """Those of the page that is asked for, and whether there are more."""
         # Of an exhibit whose publication was taken back the history is there still.
         key = asking.names["key"]
-        found = self._desk.people.revisions.of(key[:64])
+        start = (leaf_asked(asking) - 1) * LISTED
+        found = self._desk.people.revisions.of(key[:64], start=start, most=LISTED + 1)
         if not found:
             self._desk.key(asking)
-        return found
+        return found[:LISTED], len(found) > LISTED
 
     def page(self, asking: Asking) -> Shown:
-        word, found, key = asking.word, self._revisions(asking), asking.names["key"]
+        word, (found, more), key = asking.word, self._revisions(asking), asking.names["key"]
+        at = f"/office/collection/{key}/history"
+        pages = leaf_ways(asking, at, leaf_asked(asking), more=more)
         names = {one.id: one.name or one.address for one in self._desk.people.accounts.all(most=10_000)}
         told = "".join(self._one(asking, key, one, names) for one in found)
         none = f"<p>{word('还没有经办公室发布的改动。', 'Nothing has been published here by the office yet.')}</p>"
@@ -68,7 +73,7 @@ class History:
         inside = (
             f'{refusal(asking)}<ol class="programme kept">{told}</ol>' if told else refusal(asking) + none
         )
-        return office_page(asking, title, inside + way, path=f"collection/{key}/history")
+        return office_page(asking, title, inside + pages + way, path=f"collection/{key}/history")
 
     def _one(self, asking: Asking, key: str, one: Revision, names: dict[str, str]) -> str:
         word = asking.word

@@ -128,7 +128,7 @@ def fields_of(asking: Asking, keys: tuple[Key, ...], table: Mapping[str, Any]) -
         if key.kind == "pair":
             tongues = (asking.word("（中文）", " (Chinese)"), asking.word("（英文）", " (English)"))
             for language, tongue in zip(LANGUAGES, tongues, strict=True):
-                text = value.get(language, "") if isinstance(value, dict) else ""
+                text = _part(value, language)
                 long = len(text) > 60 or key.path[-1] in ("caption", "transcript", "alt")
                 kind = "textarea" if long or key.path[0] == "record" else "text"
                 name = f"{key.name}.{language}"
@@ -151,7 +151,7 @@ def fields_of(asking: Asking, keys: tuple[Key, ...], table: Mapping[str, Any]) -
             choices = {one: asking.word(*WORDS.get(f"{key.name}={one}", (one, one))) for one in key.choices}
             if not key.needed:
                 choices = {"": "–"} | choices
-            found.append(Field(key.name, label, "select", str(value or ""), hint, key.needed, choices))
+            found.append(Field(key.name, label, "select", _shown(value), hint, key.needed, choices))
         else:
             number = {"inputmode": "decimal", "autocomplete": "off"} if key.kind != "text" else given
             found.append(Field(key.name, label, "text", _shown(value), hint, key.needed, given=number))
@@ -187,8 +187,7 @@ def _typed(form: Mapping[str, str], key: Key, before: Any) -> Any:
         names = {language: f"{key.name}.{language}" for language in LANGUAGES}
         if not any(name in form for name in names.values()):
             return _ABSENT
-        old = before if isinstance(before, dict) else {}
-        texts = {x: _plain(form.get(name, old.get(x, ""))) for x, name in names.items()}
+        texts = {x: _plain(form.get(name, _part(before, x))) for x, name in names.items()}
         if not any(texts.values()):
             if key.needed:
                 raise PeopleError("content-file", why=f"{key.name}: needs both languages")
@@ -238,18 +237,26 @@ def _value(table: Mapping[str, Any], path: Path) -> Any:
 
 def _same(new: Any, before: Any) -> bool:
     if isinstance(new, Bilingual):
-        return (
-            isinstance(before, dict)
-            and {x: _plain(str(before.get(x, ""))) for x in LANGUAGES} == new.as_json()
-        )
+        return isinstance(before, dict) and {x: _plain(_part(before, x)) for x in LANGUAGES} == new.as_json()
     if isinstance(new, str) and isinstance(before, str):
         return new == _plain(before)
     return new == before
 
 
+def _part(pair: Any, language: str) -> str:
+    """What stands in the field of one language; where no pair stands in the file, in both what does."""
+    return _shown(pair.get(language) if isinstance(pair, dict) else pair)
+
+
 def _shown(value: Any) -> str:
-    if isinstance(value, list):
-        return " ".join(_shown(one) for one in value)
-    if isinstance(value, float | int) and not isinstance(value, bool):
-        return f"{value:g}" if abs(value) < 1e5 and float(f"{value:g}") == value else repr(value)
-    return "" if value is None else str(value)
+    """What stands in a field for it, whatever it is: a form shows a value that the check refuses, to be put right."""
+    if value is None:
+        return ""
+    try:
+        if isinstance(value, list):
+            return " ".join(map(_shown, value))
+        if isinstance(value, float | int) and not isinstance(value, bool):
+            return f"{value:g}" if abs(value) < 1e5 and float(f"{value:g}") == value else repr(value)
+        return str(value)
+    except (ValueError, RecursionError):  # an integer of thousands of digits, lists in lists in lists
+        return "…"

@@ -22,7 +22,7 @@ licence = "CC0-1.0"
 [place]
 x = {x}
 z = {z}
-facing = 0.0
+facing = {facing}
 
 [models]
 hall = "media/model.glb"
@@ -67,17 +67,18 @@ class Listing:
     def make(self, asking: Asking) -> dict[str, Any]:
         desk, given = self._desk, asking.form
         key = given.get("id", "").strip()
-        if desk.drafts.known(key):
-            raise PeopleError("exhibit-taken")
         titles = {lang: given.get(f"title.{lang}", "").strip() for lang in ("zh", "en")}
         if not all(titles.values()) or max(map(len, titles.values())) > 200:
             raise PeopleError("content-file", why="title: needs both languages, 200 characters each at most")
-        start = desk.house.content.hall.start
+        place = {name: repr(value) for name, value in desk.first_place().items()}
         quoted = {lang: _quoted(text) for lang, text in titles.items()}
-        table = _NEW.format(**quoted, x=f"{start.x + 1.5:g}", z=f"{start.z:g}")
+        table = _NEW.format(**quoted, **place)
         texts = {f"text.{lang}.md": f"{text}\n".encode() for lang, text in titles.items()}
-        desk.people.note(asking.person.id, "draft", key)
-        desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
+        with desk.drafts.lock:  # of two who want the same name at once one has it
+            if desk.drafts.known(key):
+                raise PeopleError("exhibit-taken")
+            desk.people.note(asking.person.id, "draft", key)
+            desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
         return {"id": key}
 
     def page(self, asking: Asking) -> Shown:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
+from math import isfinite
 from typing import Any
 
 from hall_app.content.floor.footprints import Footprint, body_footprint, plan_footprints
@@ -30,7 +31,7 @@ class Places:
         place, (reached, wrong) = self._desk.table(key).get("place"), self._standing(key)
         return {
             "id": key,
-            "place": place if isinstance(place, dict) else {},
+            "place": _plain(place) if isinstance(place, dict) else {},
             "reached": reached,
             "problems": [one.as_json() for one in wrong],
         }
@@ -152,4 +153,17 @@ def _points(ring: Iterable[tuple[float, float]]) -> str:
 
 
 def _number(value: Any) -> float:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else 0.0
+    """0 for what is none: the drawing shows the exhibit in the middle, and the check says what is wrong."""
+    try:
+        number = float(value) if isinstance(value, int | float) and not isinstance(value, bool) else 0.0
+    except OverflowError:
+        return 0.0
+    return number if isfinite(number) else 0.0
+
+
+def _plain(table: dict[str, Any]) -> dict[str, Any]:
+    """As JSON can hold it: what is neither text, truth nor number is told as TOML's reader calls it."""
+    return {
+        name: value if isinstance(value, str | bool) or _number(value) == value else type(value).__name__
+        for name, value in table.items()
+    }
