@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import argon2
 import pyotp
 import pytest
 from sqlalchemy import create_engine, inspect, select, text, update
@@ -272,6 +273,92 @@ def test_wrong_passwords_and_unknown_addresses_are_told_alike(people):
             people.sessions.sign_in(address, password)
         told.add(str(caught.value))
     assert len(told) == 1
+
+
+@pytest.fixture
+def meanwhile(monkeypatch):
+    """Have something done once, while the next password is looked at."""
+
+    def once(deed) -> None:
+        verify = argon2.PasswordHasher.verify
+
+        def slowly(self, *given) -> bool:
+            right = verify(self, *given)
+            monkeypatch.setattr(argon2.PasswordHasher, "verify", verify)
+            deed()
+            return right
+
+        monkeypatch.setattr(argon2.PasswordHasher, "verify", slowly)
+
+    return once
+
+
+SINCE = "a password set meanwhile"
+
+
+def changed_meanwhile(people: People, person, how: str) -> None:
+    secret = pyotp.random_base32()
+    match how:
+        case "password":
+            people.accounts.set_password(person, PASSWORD, SINCE)
+        case "code":
+            people.accounts.use_code(people.accounts.code_for("console", person.id), SINCE)
+        case "closed":
+            people.accounts.close("console", person.id, closed=True)
+        case "factor":
+            people.accounts.begin_second_factor(person, PASSWORD, secret, pyotp.TOTP(secret).now())
+
+
+@pytest.mark.parametrize("how", ["password", "code", "closed", "factor"])
+def test_who_was_signing_in_while_the_account_was_changed_is_not_in(people, ledger, meanwhile, how):
+    staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    meanwhile(lambda: changed_meanwhile(people, person, how))
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, PASSWORD)
+    entry = people.journal.entries()[0]
+    assert (entry.act, entry.subject, entry.refused) == ("sign in", person.id, True)
+    assert people.sessions.of(person.id) == ()
+    if how in ("password", "code"):
+        with refused("sign-in"):
+            people.sessions.sign_in(ADDRESS, PASSWORD)
+        people.sessions.sign_in(ADDRESS, SINCE)
+
+
+@pytest.mark.parametrize("deed", ["password", "factor", "factor off", "delete"])
+def test_what_an_old_password_had_begun_is_not_done_once_there_is_a_new_one(people, meanwhile, deed):
+    person, secret = people.accounts.sign_up(ADDRESS, PASSWORD), pyotp.random_base32()
+    deeds = {
+        "password": lambda: people.accounts.set_password(person, PASSWORD, "a stranger's password"),
+        "factor": lambda: people.accounts.begin_second_factor(
+            person, PASSWORD, secret, pyotp.TOTP(secret).now()
+        ),
+        "factor off": lambda: people.accounts.end_second_factor(person, PASSWORD),
+        "delete": lambda: people.accounts.delete(person, PASSWORD),
+    }
+    meanwhile(lambda: changed_meanwhile(people, person, "code"))
+    with refused("password-wrong"):
+        deeds[deed]()
+    found, _ = people.sessions.sign_in(ADDRESS, SINCE)
+    assert not found.second_factor
+
+
+def test_a_hash_is_made_anew_where_it_is_a_weaker_one_and_nowhere_else(people, ledger):
+    def kept() -> str:
+        with ledger.read() as connection:
+            return connection.execute(select(tables.user.c.password)).scalar_one()
+
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    first = kept()
+    people.sessions.sign_in(ADDRESS, PASSWORD)
+    assert kept() == first
+    (former,) = argon2.PasswordHasher.__bases__
+    weaker = former(time_cost=2, memory_cost=8, parallelism=1).hash(PASSWORD)
+    with ledger.change("console", "people", person.id) as connection:
+        connection.execute(update(tables.user).values(password=weaker))
+    people.sessions.sign_in(ADDRESS, PASSWORD)
+    assert "t=1" in kept()
+    people.sessions.sign_in(ADDRESS, PASSWORD)
 
 
 def test_the_second_factor(people):

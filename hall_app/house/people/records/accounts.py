@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 
-from sqlalchemy import Connection, delete, select, update
+from sqlalchemy import Connection, Row, delete, select, update
 from sqlalchemy.exc import IntegrityError
 
 from hall_app.house.people.credentials import (
@@ -27,6 +29,7 @@ from hall_app.house.people.records.person import (
     checked_name,
     everybody,
     found_by,
+    is_as_it_was,
     see_that_one_is_left,
 )
 from hall_app.house.people.records.sessions import end_all
@@ -98,9 +101,9 @@ class Accounts:
 
     def set_password(self, person: Person, old: str, new: str, *, keep: int | None = None) -> None:
         """Change one's own password; all sessions but `keep` end, codes and links are void. Raises PeopleError."""
-        self._prove(person.id, "password", old)
+        proved = self._prove(person.id, "password", old)
         hashed = password_hash(checked_password(new, person.address))
-        with self._ledger.change(person.id, "password", person.id) as connection:
+        with self._own_change(proved, "password") as connection:
             _set(connection, person.id, password=hashed)
             end_all(connection, person.id, but=keep)
 
@@ -140,12 +143,12 @@ class Accounts:
 
     def begin_second_factor(self, person: Person, password: str, secret: str, code: str) -> tuple[str, ...]:
         """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError."""
-        self._prove(person.id, "second factor", password)
+        proved = self._prove(person.id, "second factor", password)
         step = code_step(secret, code)
         if step is None:
             raise PeopleError("authenticator")
         codes = tuple(new_code() for _ in range(RECOVERY_CODES))
-        with self._ledger.change(person.id, "second factor", person.id) as connection:
+        with self._own_change(proved, "second factor") as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=secret, step=step)
             rows = [
@@ -157,8 +160,8 @@ class Accounts:
 
     def end_second_factor(self, person: Person, password: str) -> None:
         """Raises PeopleError."""
-        self._prove(person.id, "second factor", password)
-        with self._ledger.change(person.id, "second factor", f"{person.id} off") as connection:
+        proved = self._prove(person.id, "second factor", password)
+        with self._own_change(proved, "second factor", " off") as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=None, step=None)
 
@@ -178,8 +181,8 @@ class Accounts:
 
     def delete(self, person: Person, password: str) -> None:
         """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
-        self._prove(person.id, "delete account", password)
-        with self._ledger.change(person.id, "delete account", person.id) as connection:
+        proved = self._prove(person.id, "delete account", password)
+        with self._own_change(proved, "delete account") as connection:
             release(connection, person.id)
             for table in (
                 tables.code,
@@ -195,15 +198,23 @@ class Accounts:
                 see_that_one_is_left(connection)
         self._ledger.scrub()
 
-    def _prove(self, person: str, act: str, password: str) -> None:
+    def _prove(self, person: str, act: str, password: str) -> Row:
+        """The account's row as it was when the password was found right. Raises PeopleError."""
         table = tables.user
         with self._ledger.read() as connection:
-            kept = connection.execute(
-                select(table.c.password).where(table.c.id == person)
-            ).scalar_one_or_none()
-        if not matches(password, kept):
+            kept = connection.execute(select(table).where(table.c.id == person)).one_or_none()
+        if not matches(password, None if kept is None else kept.password) or kept is None:
             self._ledger.refuse(NOBODY, act, person)
             raise PeopleError("password-wrong")
+        return kept
+
+    @contextmanager
+    def _own_change(self, proved: Row, act: str, more: str = "") -> Iterator[Connection]:
+        """A change of one's own account, which is still the one that was proved. Raises PeopleError."""
+        with self._ledger.change(proved.id, act, f"{proved.id}{more}") as connection:
+            if not is_as_it_was(connection, proved):
+                raise PeopleError("password-wrong")
+            yield connection
 
 
 def _set(connection: Connection, person: str, **values: object) -> None:

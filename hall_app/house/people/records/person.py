@@ -7,14 +7,22 @@ import unicodedata
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import Connection, Row, func, select
 
 from hall_app.house.people.acts import Role, may
 from hall_app.house.people.database import tables
 from hall_app.house.people.errors import PeopleError
 from survey.store.database import in_utc
 
-__all__ = ["Person", "checked_address", "checked_name", "everybody", "found_by", "see_that_one_is_left"]
+__all__ = [
+    "Person",
+    "checked_address",
+    "checked_name",
+    "everybody",
+    "found_by",
+    "is_as_it_was",
+    "see_that_one_is_left",
+]
 
 _ADDRESS = re.compile(r"[^@\s]{1,64}@[^@\s.]+(\.[^@\s.]+)+")
 _LONGEST = 254  # of an address: RFC 5321
@@ -65,6 +73,18 @@ def found_by(connection: Connection, **key: str) -> Person | None:
         return None
     roles = connection.execute(select(tables.role.c.role).where(tables.role.c.user == row.id)).scalars()
     return _person(row, frozenset(Role(role) for role in roles))
+
+
+def is_as_it_was(connection: Connection, checked: Row) -> bool:
+    """Whether password, second factor and closing are still those of `checked`, the account's row as it was read.
+
+    A password takes long to look at, and may be changed meanwhile. The row is nobody else's until the commit.
+    """
+    table = tables.user
+    mine = select(table).where(table.c.id == checked.id).with_for_update()
+    now = connection.execute(mine).one_or_none()
+    seen = (checked.password, checked.authenticator, checked.closed)
+    return now is not None and (now.password, now.authenticator, now.closed) == seen
 
 
 def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, ...]:

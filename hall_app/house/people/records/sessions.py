@@ -18,7 +18,7 @@ from hall_app.house.people.credentials import (
 )
 from hall_app.house.people.database import NOBODY, Ledger, tables
 from hall_app.house.people.errors import PeopleError
-from hall_app.house.people.records.person import Person, found_by
+from hall_app.house.people.records.person import Person, found_by, is_as_it_was
 from survey.store.database import in_utc, now
 
 __all__ = ["OFFICE_HOURS", "VISITOR_DAYS", "Session", "Sessions", "end_all"]
@@ -61,17 +61,19 @@ class Sessions:
         if not right or row.closed is not None:
             self._ledger.refuse(NOBODY, "sign in", row.id)
             raise PeopleError("sign-in")
-        again = password_hash(password) if stale(row.password) else row.password
+        again = password_hash(password) if stale(row.password) else None
         try:
             with self._ledger.change(row.id, "sign in", subject) as connection:
-                if row.authenticator and not _second_factor(connection, row.id, step, code):
-                    raise PeopleError("sign-in")
-                person = found_by(connection, id=row.id)
-                if person is None:
+                person = found_by(connection, id=row.id) if is_as_it_was(connection, row) else None
+                if person is None or (
+                    row.authenticator and not _second_factor(connection, row.id, step, code)
+                ):
                     raise PeopleError("sign-in")
                 if office and not person.roles:
                     raise PeopleError("no-office")
-                connection.execute(update(table).where(table.c.id == row.id).values(password=again))
+                if again is not None:
+                    mine = (table.c.id == row.id, table.c.password == row.password)
+                    connection.execute(update(table).where(*mine).values(password=again))
                 return person, _opened(connection, row.id, office)
         except PeopleError:
             self._ledger.refuse(NOBODY, "sign in", row.id)
