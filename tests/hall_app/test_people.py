@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import threading
+import time
 import zipfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -587,6 +588,70 @@ def test_withdrawal_codes_leave_a_house_of_an_older_schema(database):
     )
     subjects = [entry.subject for entry in again.journal.entries() if entry.act == "answers"]
     assert sorted(subjects) == sorted((f"{named} done", "a1.culture done"))
+    again.close()
+
+
+def as_they_lie(ledger: Ledger) -> list[tuple]:
+    """Of visits, whose and what, in the order in which the database has them; in PostgreSQL with what wrote each."""
+    mark, place = ("''", "rowid") if ledger_is_sqlite(ledger) else ("CAST(xmin AS text)", "ctid")
+    with ledger.read() as connection:
+        found = connection.execute(text(f"SELECT exhibit, {mark} FROM look ORDER BY {place}"))
+        return [tuple(row) for row in found]
+
+
+def ledger_is_sqlite(ledger: Ledger) -> bool:
+    with ledger.read() as connection:
+        return connection.dialect.name == "sqlite"
+
+
+def test_a_look_is_in_no_journal_and_nothing_tells_which_came_first(people, ledger):
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.keepsakes.note_look(person.id, "gown")
+    assert people.keepsakes.looks(person.id) == (), "nothing is kept unasked"
+    people.keepsakes.set_keeping(person.id, on=True)
+    before = people.journal.entries()
+    looked = ("robe", "belt", "gown", "coat", "robe")
+    for exhibit in looked:
+        people.keepsakes.note_look(person.id, exhibit)
+    assert people.journal.entries() == before
+    assert [one.exhibit for one in people.keepsakes.looks(person.id)] == sorted({*looked})
+    if ledger_is_sqlite(ledger):
+        assert [exhibit for exhibit, _ in as_they_lie(ledger)] == sorted({*looked})
+    assert len({mark for _, mark in as_they_lie(ledger)}) == 1, "one transaction wrote them all"
+    people.keepsakes.set_keeping(person.id, on=False)
+    assert people.keepsakes.looks(person.id) == ()
+    switched = [entry.subject for entry in people.journal.about(person.id) if entry.act == "visits"]
+    assert switched == [f"{person.id} on", f"{person.id} off"]
+
+
+def test_a_look_that_comes_while_visits_are_turned_off_is_not_kept(people, ledger):
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.keepsakes.set_keeping(person.id, on=True)
+    looking = threading.Thread(target=people.keepsakes.note_look, args=(person.id, "gown"))
+    with ledger.change(person.id, "visits", person.id) as connection:
+        connection.execute(update(tables.user).values(keeps_looks=0))
+        looking.start()
+        time.sleep(0.3)  # it has seen that visits are kept, and waits for its turn to write
+    looking.join()
+    assert people.keepsakes.looks(person.id) == ()
+
+
+def test_looks_leave_the_journal_of_a_house_of_an_older_schema(database, ledger):
+    first = People(database)
+    person = first.accounts.sign_up(ADDRESS, PASSWORD)
+    first.keepsakes.set_keeping(person.id, on=True)
+    first.close()
+    today = now().date()
+    with ledger.change(person.id, "visits", person.id) as connection:
+        for exhibit in ("robe", "belt", "gown"):
+            connection.execute(tables.look.insert().values(user=person.id, exhibit=exhibit, day=today))
+        space = "" if ledger_is_sqlite(ledger) else "people."
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0006'"))
+    again = People(database)
+    assert [entry.act for entry in again.journal.entries()] == ["sign up"]
+    assert {one.exhibit for one in again.keepsakes.looks(person.id)} == {"robe", "belt", "gown"}
+    if ledger_is_sqlite(ledger):
+        assert [exhibit for exhibit, _ in as_they_lie(ledger)] == ["belt", "gown", "robe"]
     again.close()
 
 

@@ -98,7 +98,8 @@ favourite = Table(
     Column("made", DateTime(timezone=True), nullable=False),
 )
 
-# That an exhibit was looked at closely, by the day and no finer; only of who asked for it.
+# That an exhibit was looked at closely, by the day and no finer; only of who asked for it. No row of the journal tells
+# of it, and the order of rows is none of looking: `Keepsakes.note_look` writes a day's rows anew, by exhibit.
 look = Table(
     "look",
     metadata,

@@ -21,7 +21,7 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "登录会话的起止时间；不记录浏览器，也不记录网络地址。",
                 "您的收藏与预约（人数、团体名称）；参观记录只在您开启后保存，且只记日期。",
                 "问卷的撤回码：只在您要求时由账户保管；它把账户与那份回答连在一起。",
-                "操作记录：何时做了何事，只以随机编号指代人，不含邮箱。",
+                "操作记录：何时做了何事，只以随机编号指代人，不含邮箱，也不含您看过什么。",
             ),
         ),
         (
@@ -35,7 +35,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "you turn that on, and by the day.",
                 "The withdrawal code of answers only where you ask that the account keep it; it links the account to "
                 "those answers.",
-                "A journal of what was done and when, in which a random number stands for you and never your address.",
+                "A journal of what was done and when, in which a random number stands for you and never your address. "
+                "What you looked at is not in it.",
             ),
         ),
     ),
