@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from hmac import compare_digest
 
 from sqlalchemy import Connection, delete, select, update
 
 from hall_app.house.people.credentials import (
+    browser_mark,
     code_step,
     digest,
     matches,
+    new_id,
     new_token,
     password_hash,
     stale,
@@ -83,6 +86,26 @@ class Sessions:
         """A token for somebody who has just proved himself otherwise: by a code, or by signing up."""
         with self._ledger.change(person.id, "sign in", "office" if office else "visitor") as connection:
             return _opened(connection, person.id, office)
+
+    def mark(self, person: str) -> str:
+        """For a browser to keep that was let in to that account: by it `knows` tells it from strangers. No way in."""
+        table = tables.user
+        with self._ledger.read() as connection:
+            kept = connection.execute(
+                select(table.c.password).where(table.c.id == person)
+            ).scalar_one_or_none()
+        return browser_mark(new_id(), person, kept) if kept else ""
+
+    def knows(self, address: str, mark: str) -> bool:
+        """Whether a browser that keeps this mark was let in to the account of that address, by its password of now."""
+        table, (nonce, _, told) = tables.user, mark.partition(".")
+        if not told:
+            return False
+        with self._ledger.read() as connection:
+            row = connection.execute(select(table).where(table.c.address == address)).one_or_none()
+        if row is None or row.password is None:
+            return False
+        return compare_digest(browser_mark(nonce, row.id, row.password).encode(), mark.encode())
 
     def find(self, token: str, *, office: bool = False) -> tuple[Person, Session] | None:
         """Whose token it is; None for one that is unknown, ended, out of date or of the other kind."""

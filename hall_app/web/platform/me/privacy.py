@@ -92,7 +92,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             "Cookie 与浏览器存储",
             (
                 "hall-me（登录后）、hall-office（工作人员登录后）、hall-form（打开表单时，确认表单来自您的浏览器）、"
-                "hall-place（在展厅内，关闭浏览器即失效）。脚本读不到它们，别无其他。",
+                "hall-place（在展厅内，关闭浏览器即失效）、hall-known（登录后留下，至多 400 天：他人猜您的密码时，"
+                "您的浏览器仍可登录；其中没有您的信息，也不能代替密码，密码更改即失效）。脚本读不到它们，别无其他。",
                 "展厅的设置与位置、问卷草稿只留在您的浏览器里；撤回码也是，除非您让账户保管。",
             ),
         ),
@@ -100,8 +101,10 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             "Cookies, and what your browser keeps",
             (
                 "hall-me once you sign in, hall-office for staff, hall-form where there is a form, which ties it "
-                "to your browser, and hall-place in the hall, until the browser is closed. No script reads them, and "
-                "there are no others.",
+                "to your browser, hall-place in the hall, until the browser is closed, and hall-known, which signing "
+                "in leaves for 400 days at most: while others guess at your password this browser still gets in. It "
+                "says nothing of you, is no way in without the password, and is void once that is changed. No script "
+                "reads them, and there are no others.",
                 "Settings of the hall, where you stood and drafts of answers stay in your browser, and so do "
                 "withdrawal codes unless you ask the account to keep one.",
             ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from html import escape
 
 from hall_app.house.people.credentials import authenticator_address, new_authenticator
@@ -24,11 +25,12 @@ class Safety:
 
     def set_password(self, asking: Asking) -> Moved:
         assert asking.guest is not None
-        self._count(asking)
-        keep = asking.guest.session.id
+        keep, person = asking.guest.session.id, asking.person
         new = given_password(asking)
-        self._people.accounts.set_password(asking.person, asking.form.get("old", ""), new, keep=keep)
-        return Moved(asking.address("/me#password", done="password"))
+        with self._counted(asking):
+            self._people.accounts.set_password(person, asking.form.get("old", ""), new, keep=keep)
+        mark = self._people.sessions.mark(person.id)  # the former went with the former password
+        return Moved(asking.address("/me#password", done="password"), mark=mark)
 
     def second_factor_page(self, asking: Asking) -> Shown | Moved:
         import segno
@@ -71,11 +73,11 @@ class Safety:
         return Shown(Page(title, main, "me"), path="/me/second-factor")
 
     def begin_second_factor(self, asking: Asking) -> Shown:
-        self._count(asking)
-        given, word = asking.form, asking.word
-        codes = self._people.accounts.begin_second_factor(
-            asking.person, given.get("password", ""), _secret(given.get("secret", "")), given.get("code", "")
-        )
+        given, word, secret = asking.form, asking.word, _secret(asking.form.get("secret", ""))
+        with self._counted(asking):
+            codes = self._people.accounts.begin_second_factor(
+                asking.person, given.get("password", ""), secret, given.get("code", "")
+            )
         title = word("恢复码", "Recovery codes")
         lead = word(
             "两步验证已开启。请抄下或打印这些恢复码：手机不在时，每个可代替验证码一次。它们不会再显示。",
@@ -89,8 +91,8 @@ class Safety:
         return Shown(Page(title, main, "me"), path="/me")
 
     def end_second_factor(self, asking: Asking) -> Moved:
-        self._count(asking)
-        self._people.accounts.end_second_factor(asking.person, asking.form.get("password", ""))
+        with self._counted(asking):
+            self._people.accounts.end_second_factor(asking.person, asking.form.get("password", ""))
         return Moved(asking.address("/me#second-factor", done="factor-off"))
 
     def end_session(self, asking: Asking) -> Moved:
@@ -137,12 +139,17 @@ class Safety:
         return Shown(Page(title, main, "me"), path="/me/delete")
 
     def delete(self, asking: Asking) -> Moved:
-        self._count(asking)
-        self._people.accounts.delete(asking.person, asking.form.get("password", ""))
+        with self._counted(asking):
+            self._people.accounts.delete(asking.person, asking.form.get("password", ""))
         return Moved(asking.address("/me", done="deleted"), "")
 
-    def _count(self, asking: Asking) -> None:
-        self._pace.take("account from here", asking.person.address, asking.network)
+    def _counted(self, asking: Asking) -> AbstractContextManager[None]:
+        """By the session: whoever guesses at the account elsewhere takes nothing from who is signed in."""
+        assert asking.guest is not None
+        session = f"session {asking.guest.session.id}"
+        return self._pace.failures(
+            ("account from here", asking.person.id, session), ("account", asking.person.id, session)
+        )
 
 
 def password_form(asking: Asking) -> str:
