@@ -131,6 +131,9 @@ class Stock:
         for path in ("", "/roles", "/code", "/close", "/open", "/sign-out", "/second-factor"):
             for method in ("GET", "POST"):
                 self.names[f"{method} people/{{key}}{path}"] = {"key": [person.id]}
+        leaving = people.accounts.make("console", "leaving@example.org")
+        self.names["POST people/{key}/delete"] = {"key": [leaving.id]}
+        self.given["POST people/{key}/delete"] = {"address": leaving.address}
         self.asked["GET people"] = {"q": ["stock"]}
         self.given |= {
             "POST people": {"address": "somebody@example.org", "name": "Somebody"},

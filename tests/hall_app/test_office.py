@@ -69,6 +69,7 @@ DONE = {
         "people",
         "people/{key}/code",
         "people/{key}/close",
+        "people/{key}/delete",
         "people/{key}/open",
         "people/{key}/sign-out",
         "people/{key}/second-factor",
@@ -317,6 +318,28 @@ def test_people_get_roles_codes_and_are_shut_out(counter, people):
     acts = [entry["act"] for entry in one.told("audit") if entry["who"] == one.person]
     assert {"people", "roles"} <= set(acts)
     assert address in one.get("/office/audit?lang=en").text
+
+
+def test_a_closed_account_is_deleted_once_its_address_was_typed(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(f"closed{next(NUMBERS)}@example.org", PASSWORD)
+    at = f"people/{person.id}"
+    one.told(f"{at}/close", {})
+    for lang, said in (("en", "This account is closed"), ("zh", "这个账户已关闭")):
+        told = one.send(f"/office/{at}?lang={lang}", f"/office/{at}/code")
+        assert told.status == 400
+        assert said in told.text
+    wrong = one.send(f"/office/{at}?lang=en", "form-delete", address="somebody@example.org")
+    assert wrong.status == 400
+    assert "Type the address" in wrong.text.partition("refused")[2]
+    assert one.api(f"{at}/delete", {}).status == 400
+    assert people.accounts.of(person.id).address == person.address
+    gone = one.send(wrong, "form-delete", address=f" {person.address.upper()}")
+    assert (gone.status, gone.address.partition("?")[0]) == (200, "/office/people")
+    assert one.api(at).status == 404
+    assert person.address not in one.get("/office/audit?lang=en").text
+    (told,) = [entry for entry in one.told("audit") if entry["subject"] == f"{person.id} deleted"]
+    assert (told["act"], told["who"]) == ("people", one.person)
 
 
 def test_tokens_are_made_shown_once_and_revoked(counter, people):

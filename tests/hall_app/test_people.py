@@ -483,6 +483,29 @@ def test_what_is_deleted_is_gone_from_every_table_and_from_the_files(people, led
             assert trace.encode() not in files
 
 
+def test_a_closed_account_gets_no_code_and_is_deleted_by_the_house(people, ledger):
+    keeper = staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD, name="Lan Yi the second")
+    people.keepsakes.keep(person.id, "gown")
+    people.accounts.close(keeper.id, person.id, closed=True)
+    with refused("account-closed") as caught:
+        people.accounts.code_for(keeper.id, person.id)
+    assert "open it again" in caught.value.text("en")
+    assert "重新开放" in caught.value.text("zh")
+    with refused("no-account"):
+        people.accounts.code_for(keeper.id, "0123456789abcdef")
+    people.accounts.remove(keeper.id, person.id)
+    for trace in (ADDRESS, "Lan Yi", "gown"):
+        assert trace not in everything(ledger)
+    told = people.journal.about(person.id)[-1]
+    assert (told.who, told.act, told.subject) == (keeper.id, "people", f"{person.id} deleted")
+    with refused("no-account"):
+        people.accounts.remove(keeper.id, person.id)
+    with refused("last-administrator"):
+        people.accounts.remove("console", keeper.id)
+    assert people.accounts.of(keeper.id) == keeper
+
+
 def test_a_copy_holds_all_but_secrets(people):
     person = people.accounts.sign_up(ADDRESS, PASSWORD, name="兰", language="zh")
     _, token = people.sessions.sign_in(ADDRESS, PASSWORD)
@@ -734,6 +757,25 @@ def test_the_command_names_the_first_administrator(tmp_path):
     assert "0 sessions ended" in admin(tmp_path, "revoke", ADDRESS).stdout
     with refused("code"):
         people.accounts.holder(code)  # a code that is about would let him in again
+    people.close()
+
+
+@pytest.mark.slow
+def test_the_command_deletes_an_account_once_that_is_confirmed(tmp_path):
+    people = People(tmp_path)
+    staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.accounts.close("console", person.id, closed=True)
+    asked = admin(tmp_path, "delete", ADDRESS)
+    assert asked.returncode == 1
+    assert "give --yes" in asked.stderr
+    assert people.accounts.of(person.id).address == ADDRESS
+    done = admin(tmp_path, "delete", ADDRESS, "--yes")
+    assert done.returncode == 0, done.stderr
+    assert "deleted" in done.stdout
+    with refused("no-account"):
+        people.accounts.of(person.id)
+    assert people.journal.entries()[0].subject == f"{person.id} deleted"
     people.close()
 
 

@@ -54,6 +54,14 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "没有这个邮箱的账户，请核对地址。",
         "There is no account with this address: check how it is written.",
     ),
+    "account-closed": (
+        "这个账户已关闭，代码无法使用；请先重新开放账户，或将其删除。",
+        "This account is closed, and no code would open it: open it again first, or delete it.",
+    ),
+    "delete-confirm": (
+        "请照抄邮箱以确认删除账户。",
+        "Type the address of the account to confirm that it is to be deleted.",
+    ),
     "no-session": (
         "没有这个登录会话，可能已经结束。",
         "There is no such session: it may have ended already.",

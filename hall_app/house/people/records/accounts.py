@@ -108,11 +108,17 @@ class Accounts:
             end_all(connection, person.id, but=keep)
 
     def code_for(self, who: str, person: str, *, long: bool = False) -> str:
-        """A one-time code that opens the account, or one for a link (`long`); earlier ones are good no more."""
+        """A one-time code that opens the account, or one for a link (`long`); earlier ones are good no more.
+
+        Raises PeopleError, also for a closed account, which no code opens.
+        """
         secret, table = new_token() if long else new_code(), tables.code
         kept = digest(secret if long else typed_code(secret))
         row = {"digest": kept, "user": person, "purpose": "open"}
         with self._ledger.change(who, "people", f"{person} code") as connection:
+            found = found_by(connection, id=person)
+            if found is None or found.closed is not None:
+                raise PeopleError("no-account" if found is None else "account-closed")
             connection.execute(delete(table).where(table.c.user == person, table.c.purpose == "open"))
             connection.execute(table.insert().values(expires=now() + timedelta(days=CODE_DAYS), **row))
         return secret
@@ -183,19 +189,13 @@ class Accounts:
         """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
         proved = self._prove(person.id, "delete account", password)
         with self._own_change(proved, "delete account") as connection:
-            release(connection, person.id)
-            for table in (
-                tables.code,
-                tables.session,
-                tables.role,
-                tables.favourite,
-                tables.look,
-                tables.answer_code,
-            ):
-                connection.execute(delete(table).where(table.c.user == person.id))
-            connection.execute(delete(tables.user).where(tables.user.c.id == person.id))
-            if person.roles:
-                see_that_one_is_left(connection)
+            _delete(connection, person.id)
+        self._ledger.scrub()
+
+    def remove(self, who: str, person: str) -> None:
+        """Delete another's account, as `delete` does: of one that is closed its owner cannot. Raises PeopleError."""
+        with self._ledger.change(who, "people", f"{person} deleted") as connection:
+            _delete(connection, person)
         self._ledger.scrub()
 
     def _prove(self, person: str, act: str, password: str) -> Row:
@@ -215,6 +215,26 @@ class Accounts:
             if not is_as_it_was(connection, proved):
                 raise PeopleError("password-wrong")
             yield connection
+
+
+def _delete(connection: Connection, person: str) -> None:
+    """Raises PeopleError where the account is gone, or no administrator would be left."""
+    found = found_by(connection, id=person)
+    if found is None:
+        raise PeopleError("no-account")
+    release(connection, person)
+    for table in (
+        tables.code,
+        tables.session,
+        tables.role,
+        tables.favourite,
+        tables.look,
+        tables.answer_code,
+    ):
+        connection.execute(delete(table).where(table.c.user == person))
+    connection.execute(delete(tables.user).where(tables.user.c.id == person))
+    if found.roles:
+        see_that_one_is_left(connection)
 
 
 def _set(connection: Connection, person: str, **values: object) -> None:

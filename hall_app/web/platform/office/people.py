@@ -29,6 +29,7 @@ def people_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one = "people/{key}"
     account = {"address": "its e-mail address", "name": "how its owner is called, or nothing"}
+    typed = {"address": "of the account once more, to confirm"}
     roles = {"roles": f"all that it is to have: {', '.join(Role)}; none for a visitor"}
     return (
         Deed("people", "people", rooms.make, "people/{id}", rooms.everybody_page, fields=account),
@@ -36,6 +37,7 @@ def people_deeds(counter: Counter) -> tuple[Deed, ...]:
         Deed(f"{one}/code", "people", rooms.code, one, rooms.one_page, rooms.code_page),
         Deed(f"{one}/close", "people", rooms.close, one, rooms.one_page),
         Deed(f"{one}/open", "people", rooms.reopen, one, rooms.one_page),
+        Deed(f"{one}/delete", "people", rooms.remove, "people", rooms.one_page, fields=typed),
         Deed(f"{one}/sign-out", "people", rooms.end_sessions, one, rooms.one_page),
         Deed(f"{one}/second-factor", "people", rooms.drop_factor, one, rooms.one_page),
     )
@@ -83,6 +85,13 @@ class _Rooms:
     def reopen(self, asking: Asking) -> dict[str, Any]:
         self._people.accounts.close(asking.person.id, asking.names["key"], closed=False)
         return {"id": asking.names["key"], "closed": False}
+
+    def remove(self, asking: Asking) -> dict[str, Any]:
+        person = self._people.accounts.of(asking.names["key"])
+        if asking.form.get("address", "").strip().casefold() != person.address:
+            raise PeopleError("delete-confirm")
+        self._people.accounts.remove(asking.person.id, person.id)
+        return {"id": person.id, "deleted": True}
 
     def end_sessions(self, asking: Asking) -> dict[str, Any]:
         key = self._people.accounts.of(asking.names["key"]).id  # of nobody none is ended
@@ -162,10 +171,10 @@ class _Rooms:
             (word("状态", "State"), word("已关闭", "closed") if person.closed else word("开放", "open")),
         )
         listed = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts)
-        why = _why(asking) if asking.form.get("of") != "roles" else ""
+        why = _why(asking) if asking.form.get("of") not in ("roles", "delete") else ""
         inside = f"""{why}<dl class="how">{listed}</dl><h2 class="small">{word("角色", "Roles")}</h2>
 <div class="desk">{form(asking, "roles", f"{at}/roles", ticks, word("保存角色", "Save the roles"))}</div>
-<h2 class="small">{word("账户", "Account")}</h2><div class="deeds">{buttons}</div>"""
+<h2 class="small">{word("账户", "Account")}</h2><div class="deeds">{buttons}</div>{_deletion(asking, at)}"""
         return office_page(asking, person.address, inside, path=f"people/{person.id}")
 
     def code_page(self, asking: Asking, came: dict[str, Any]) -> Shown:
@@ -200,6 +209,26 @@ class _Rooms:
             f'<p class="doors"><a href="{escape(more)}">{word("更早的", "Earlier")}</a></p>' if more else ""
         )
         return office_page(asking, title, rows(title, heads, lines) + older, path="audit")
+
+
+def _deletion(asking: Asking, at: str) -> str:
+    word = asking.word
+    field = Field(
+        "address",
+        word("照抄邮箱以确认", "Type the address to confirm"),
+        hint=word(
+            "账户及其收藏、参观记录与预约当即删除，无法恢复；审计记录只留编号。",
+            "The account goes at once with favourites, visits and reservations, and cannot be brought back; the "
+            "journal keeps a number.",
+        ),
+        given={"autocomplete": "off", "spellcheck": "false", "maxlength": "254"},
+    )
+    sent = form(
+        asking, "delete", f"{at}/delete", (field,), word("永久删除", "Delete for good"), style="grave"
+    )
+    opened = " open" if asking.refusal and asking.form.get("of") == "delete" else ""
+    summary = word("删除账户…", "Delete the account …")
+    return f'<details{opened}><summary>{summary}</summary><div class="desk">{sent}</div></details>'
 
 
 def _before(asking: Asking) -> int | None:
