@@ -54,6 +54,7 @@ class Stock:
     asked: dict[str, dict[str, list[str]]] = field(default_factory=dict)
     _texts: dict[str, bytes] = field(default_factory=dict)
     _name: str = ""
+    _person: str = ""
     _backup: bytes = b""
 
     @classmethod
@@ -71,6 +72,8 @@ class Stock:
         """Before a deed is asked for at that path of the API: what the last one did to its thing is taken back."""
         if path.startswith("collection/chest/"):
             self._exhibit_again(path.rpartition("/")[2])
+        elif path == f"people/{self._person}/code":
+            self.counter.people.accounts.close("console", self._person, closed=False)
         elif path.startswith("backups/"):
             kept = self.counter.data / "backups" / self._name
             if not kept.exists():
@@ -126,6 +129,7 @@ class Stock:
     def _people(self) -> None:
         people = self.counter.people
         person = people.accounts.make("console", "stock@example.org")
+        self._person = person.id
         people.accounts.use_code(people.accounts.code_for("console", person.id), PASSWORD)
         people.sessions.sign_in("stock@example.org", PASSWORD, "", office=False)
         for path in ("", "/roles", "/code", "/close", "/open", "/sign-out", "/second-factor"):

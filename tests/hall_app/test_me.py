@@ -263,7 +263,16 @@ def test_the_second_factor_is_set_up_and_asked_for(plain_hall):
     assert without.status == 400
     other.send("/me", "form-sign-in", address=address, password=PASSWORD, code=codes[0])
     assert address in other.get("/me").text
-    off = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD)
+    without = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD)
+    assert without.status == 400
+    assert "the authenticator that is on" in without.text
+    page = visitor.get("/me/second-factor?lang=en")  # another phone
+    newer = page.form("form-second-factor")["secret"]
+    given = {"code": pyotp.TOTP(newer).now(), "password": PASSWORD}
+    assert visitor.send(page, "form-second-factor", **given).status == 400
+    told = visitor.send(page, "form-second-factor", present=codes[1], **given)
+    codes = re.findall(r"<code>([-A-Z0-9]{14})</code>", told.text)
+    off = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD, code=codes[0])
     assert "The second factor is off" in off.text
 
 

@@ -381,8 +381,49 @@ def test_the_second_factor(people):
     with refused("sign-in"):
         people.sessions.sign_in(ADDRESS, "wrong password", recovery[1])
     people.sessions.sign_in(ADDRESS, PASSWORD, recovery[1])  # a wrong password used up no code
-    people.accounts.end_second_factor(person, PASSWORD)
+    people.accounts.end_second_factor(person, PASSWORD, recovery[2])
     people.sessions.sign_in(ADDRESS, PASSWORD)
+
+
+def test_the_second_factor_is_replaced_and_turned_off_by_who_has_it(people):
+    person, secret, other = (
+        people.accounts.sign_up(ADDRESS, PASSWORD),
+        *(pyotp.random_base32() for _ in "ab"),
+    )
+    code = pyotp.TOTP(secret).now()
+    recovery = people.accounts.begin_second_factor(person, PASSWORD, secret, code)
+
+    def replaced(present: str) -> tuple[str, ...]:
+        return people.accounts.begin_second_factor(person, PASSWORD, other, pyotp.TOTP(other).now(), present)
+
+    for wrong in ("", "000000", code, pyotp.TOTP(other).now()):  # `code` was used to set it up
+        with refused("present-factor"):
+            replaced(wrong)
+        entry = people.journal.entries()[0]
+        assert (entry.act, entry.subject, entry.refused) == ("second factor", person.id, True)
+        with refused("present-factor"):
+            people.accounts.end_second_factor(person, PASSWORD, wrong)
+    with refused("password-wrong"):
+        people.accounts.end_second_factor(person, "wrong password", recovery[0])
+    people.sessions.sign_in(ADDRESS, PASSWORD, recovery[0])  # and none of that used it up
+    newer = replaced(recovery[1])
+    with refused("present-factor"):
+        people.accounts.end_second_factor(person, PASSWORD, recovery[2])  # of the one before
+    people.accounts.end_second_factor(person, PASSWORD, newer[0])
+    assert not people.accounts.of(person.id).second_factor
+
+
+def test_a_factor_that_was_set_up_by_who_never_proved_the_address_goes_with_a_code(people):
+    squatter, secret = people.accounts.sign_up(ADDRESS, PASSWORD), pyotp.random_base32()
+    people.accounts.begin_second_factor(squatter, PASSWORD, secret, pyotp.TOTP(secret).now())
+    opened = people.accounts.use_code(people.accounts.code_for("console", squatter.id), "her own password 1")
+    assert not opened.second_factor
+    people.sessions.sign_in(ADDRESS, "her own password 1")
+    people.accounts.begin_second_factor(opened, "her own password 1", secret, pyotp.TOTP(secret).now())
+    again = people.accounts.use_code(people.accounts.code_for("console", squatter.id), "her own password 2")
+    assert again.second_factor, "of a verified address it stays: a code stands in for the password alone"
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, "her own password 2")
 
 
 def test_one_recovery_code_sent_by_eight_at_once_lets_one_in(people):

@@ -50,6 +50,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "验证码不对，请核对手机时间，输入最新的六位数字。",
         "The authenticator's code is wrong: check the phone's clock and give the newest six digits.",
     ),
+    "present-factor": (
+        "现用验证器的验证码不对，请输入它最新显示的六位数字，或一个恢复码。",
+        "The code of the authenticator that is on is wrong: give its newest six digits, or a recovery code.",
+    ),
     "no-account": (
         "没有这个邮箱的账户，请核对地址。",
         "There is no account with this address: check how it is written.",

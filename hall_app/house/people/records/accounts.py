@@ -32,7 +32,7 @@ from hall_app.house.people.records.person import (
     is_as_it_was,
     see_that_one_is_left,
 )
-from hall_app.house.people.records.sessions import end_all
+from hall_app.house.people.records.sessions import end_all, use_second_factor
 from survey.store.database import now
 
 __all__ = ["CODE_DAYS", "RECOVERY_CODES", "Accounts"]
@@ -133,9 +133,12 @@ class Accounts:
         return person
 
     def use_code(self, secret: str, password: str) -> Person:
-        """Verify the account and set its password; all its sessions end. Raises PeopleError, and the code is kept."""
+        """Verify the account and set its password; all its sessions end, and of one that was not verified before the
+        second factor goes. Raises PeopleError, and the code is kept."""
         person = self.holder(secret)
         hashed = password_hash(checked_password(password, person.address))
+        # Whoever made an account of an address that he never proved to be his may have left an authenticator as well.
+        factor = {} if person.verified else {"authenticator": None, "step": None}
         with self._ledger.change(person.id, "use code", person.id) as connection:
             row = _open_code(connection, secret)
             if (
@@ -143,18 +146,27 @@ class Accounts:
                 or not connection.execute(delete(tables.code).where(tables.code.c.id == row.id)).rowcount
             ):
                 raise PeopleError("code")
-            _set(connection, person.id, password=hashed, verified=now())
+            _set(connection, person.id, password=hashed, verified=now(), **factor)
+            if factor:
+                _drop_recovery(connection, person.id)
             end_all(connection, person.id)
-        return person
+            opened = found_by(connection, id=person.id)
+        assert opened is not None
+        return opened
 
-    def begin_second_factor(self, person: Person, password: str, secret: str, code: str) -> tuple[str, ...]:
-        """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError."""
+    def begin_second_factor(
+        self, person: Person, password: str, secret: str, code: str, present: str = ""
+    ) -> tuple[str, ...]:
+        """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError.
+
+        present: a code of the factor that is on already, which this one takes the place of.
+        """
         proved = self._prove(person.id, "second factor", password)
         step = code_step(secret, code)
         if step is None:
             raise PeopleError("authenticator")
         codes = tuple(new_code() for _ in range(RECOVERY_CODES))
-        with self._own_change(proved, "second factor") as connection:
+        with self._own_change(proved, "second factor", present=present) as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=secret, step=step)
             rows = [
@@ -164,10 +176,10 @@ class Accounts:
             connection.execute(tables.code.insert(), rows)
         return codes
 
-    def end_second_factor(self, person: Person, password: str) -> None:
-        """Raises PeopleError."""
+    def end_second_factor(self, person: Person, password: str, present: str = "") -> None:
+        """Turn it off. present: one of its codes. Raises PeopleError."""
         proved = self._prove(person.id, "second factor", password)
-        with self._own_change(proved, "second factor", " off") as connection:
+        with self._own_change(proved, "second factor", " off", present=present) as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=None, step=None)
 
@@ -209,12 +221,26 @@ class Accounts:
         return kept
 
     @contextmanager
-    def _own_change(self, proved: Row, act: str, more: str = "") -> Iterator[Connection]:
-        """A change of one's own account, which is still the one that was proved. Raises PeopleError."""
-        with self._ledger.change(proved.id, act, f"{proved.id}{more}") as connection:
-            if not is_as_it_was(connection, proved):
-                raise PeopleError("password-wrong")
-            yield connection
+    def _own_change(
+        self, proved: Row, act: str, more: str = "", *, present: str | None = None
+    ) -> Iterator[Connection]:
+        """A change of one's own account, which is still the one that was proved. Raises PeopleError.
+
+        present: a code of the second factor, where one is on; None: it is not asked for.
+        """
+        asked = present is not None and proved.authenticator is not None
+        step = code_step(proved.authenticator, present or "") if asked else None
+        try:
+            with self._ledger.change(proved.id, act, f"{proved.id}{more}") as connection:
+                if not is_as_it_was(connection, proved):
+                    raise PeopleError("password-wrong")
+                if asked and not use_second_factor(connection, proved.id, step, present or ""):
+                    raise PeopleError("present-factor")
+                yield connection
+        except PeopleError as error:
+            if error.key in ("password-wrong", "present-factor"):
+                self._ledger.refuse(NOBODY, act, proved.id)
+            raise
 
 
 def _delete(connection: Connection, person: str) -> None:

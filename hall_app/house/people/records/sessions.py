@@ -24,7 +24,7 @@ from hall_app.house.people.errors import PeopleError
 from hall_app.house.people.records.person import Person, found_by, is_as_it_was
 from survey.store.database import in_utc, now
 
-__all__ = ["OFFICE_HOURS", "VISITOR_DAYS", "Session", "Sessions", "end_all"]
+__all__ = ["OFFICE_HOURS", "VISITOR_DAYS", "Session", "Sessions", "end_all", "use_second_factor"]
 
 VISITOR_DAYS = 30
 OFFICE_HOURS = 12  # a working day: a desk that is left in the evening is locked in the morning
@@ -69,7 +69,7 @@ class Sessions:
             with self._ledger.change(row.id, "sign in", subject) as connection:
                 person = found_by(connection, id=row.id) if is_as_it_was(connection, row) else None
                 if person is None or (
-                    row.authenticator and not _second_factor(connection, row.id, step, code)
+                    row.authenticator and not use_second_factor(connection, row.id, step, code)
                 ):
                     raise PeopleError("sign-in")
                 if office and not person.roles:
@@ -156,8 +156,11 @@ def _opened(connection: Connection, person: str, office: bool) -> str:
     return token
 
 
-def _second_factor(connection: Connection, person: str, step: int | None, code: str) -> bool:
-    """Whether the code is good, and now used: two who send the same at once cannot both come in."""
+def use_second_factor(connection: Connection, person: str, step: int | None, code: str) -> bool:
+    """Whether the code is good, and now used: two who send the same at once cannot both come in.
+
+    step: of the authenticator's, None where it is none of its codes: it may be a recovery code.
+    """
     user, kept = tables.user, tables.code
     if step is not None:
         unused = user.c.step.is_(None) | (user.c.step < step)

@@ -29,7 +29,8 @@ RATES: dict[str, RateLimitItem] = {
     "copy": parse("10 per hour"),
     "book": parse("60 per 5 minutes"),
 }
-_WRONG = frozenset({"sign-in", "no-office", "password-wrong", "authenticator"})  # refusals that a guess meets
+# Refusals that a guess meets.
+_WRONG = frozenset({"sign-in", "no-office", "password-wrong", "authenticator", "present-factor"})
 
 
 class Pace:
