@@ -228,13 +228,13 @@ class Accounts:
 
         present: a code of the second factor, where one is on; None: it is not asked for.
         """
-        asked = present is not None and proved.authenticator is not None
-        step = code_step(proved.authenticator, present or "") if asked else None
+        secret, code = None if present is None else proved.authenticator, present or ""
+        step = code_step(secret, code) if secret else None
         try:
             with self._ledger.change(proved.id, act, f"{proved.id}{more}") as connection:
                 if not is_as_it_was(connection, proved):
                     raise PeopleError("password-wrong")
-                if asked and not use_second_factor(connection, proved.id, step, present or ""):
+                if secret and not use_second_factor(connection, proved.id, step, code):
                     raise PeopleError("present-factor")
                 yield connection
         except PeopleError as error:
