@@ -42,6 +42,7 @@ def test_a_backup_is_made_fetched_and_restored_beside(counter, administrator, tm
     assert not (counter.data / "restored").exists()
     done = one.send(page, "form-restore-0", name=told["name"])
     assert "hall serve --content" in done.text
+    assert "one-time codes and tokens are void" in done.text
     home = counter.data / "restored" / told["name"].removesuffix(".zip")
     assert load(home / "content").exhibit("chest") is not None
     people = People(home / "data")

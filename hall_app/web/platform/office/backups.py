@@ -186,8 +186,8 @@ class _Rooms:
             f"Checked and restored: {came['people']} accounts, {came['answers']} answers. End this hall; open it by:",
         )
         after = word(
-            "恢复后无人登录，一次性代码失效；备份之后删除或撤回的内容会重新出现。",
-            "Nobody is signed in there and one-time codes are void; what was deleted since is there again.",
+            "恢复后无人登录，一次性代码与令牌失效；备份之后删除或撤回的内容会重新出现。",
+            "Nobody is signed in there, one-time codes and tokens are void; what was deleted since is there again.",
         )
         back = f'<a href="{asking.address("/office/backups")}">{word("返回", "Back")}</a>'
         inside = f"""<p role="status">{told}</p><p><code>{escape(command)}</code></p><p class="quiet">{after}</p>
