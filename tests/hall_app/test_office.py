@@ -7,6 +7,7 @@ import json
 import re
 from datetime import UTC, datetime, timedelta
 from html import escape
+from urllib.parse import urlencode
 
 import pytest
 from form_visitor import Visitor
@@ -318,6 +319,28 @@ def test_people_get_roles_codes_and_are_shut_out(counter, people):
     acts = [entry["act"] for entry in one.told("audit") if entry["who"] == one.person]
     assert {"people", "roles"} <= set(acts)
     assert address in one.get("/office/audit?lang=en").text
+
+
+def test_who_stands_beyond_the_page_is_found(counter, people):
+    one, crowd = clerk(counter, people, Role.ADMINISTRATOR), next(NUMBERS)
+    for number in range(201):
+        people.accounts.make("console", f"crowd{crowd}-{number:03}@example.org", name="Of <b>the</b> crowd")
+    last = f"crowd{crowd}-200@example.org"
+    page = one.get("/office/people?lang=en")
+    assert last not in page.text
+    assert f"{people.accounts.count()} accounts in all" in page.text
+    assert "the first 200 are listed" in page.text
+    fields = page.form("form-search")
+    assert fields["q"] == ""
+    found = one.get(f"/office/people?{urlencode(fields | {'q': f'crowd{crowd}-20'})}")
+    assert last in found.text
+    assert f'value="crowd{crowd}-20"' in found.text
+    assert f"1 of {people.accounts.count()} accounts" in found.text
+    assert "are listed" not in found.text
+    assert people.accounts.count("Of <B>the") == people.accounts.count(f"crowd{crowd}-") == 201
+    nobody = one.get("/office/people?q=nobody-at-all&lang=zh")
+    assert f"共 {people.accounts.count()} 个账户，符合的有 0 个" in nobody.text
+    assert "q=nobody-at-all&amp;lang=en" in nobody.text, "the other language asks the same"
 
 
 def test_a_closed_account_is_deleted_once_its_address_was_typed(counter, people):

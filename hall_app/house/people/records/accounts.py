@@ -29,6 +29,7 @@ from hall_app.house.people.records.person import (
     checked_name,
     everybody,
     found_by,
+    how_many,
     is_as_it_was,
     see_that_one_is_left,
 )
@@ -67,6 +68,11 @@ class Accounts:
         """People whose address or name holds `wanted`, staff first; `most` at most."""
         with self._ledger.read() as connection:
             return everybody(connection, wanted, most)
+
+    def count(self, wanted: str = "") -> int:
+        """How many people's address or name holds `wanted`."""
+        with self._ledger.read() as connection:
+            return how_many(connection, wanted)
 
     def sign_up(self, address: str, password: str, *, name: str = "", language: str = "zh") -> Person:
         """A visitor's account, not verified yet. Raises PeopleError."""

@@ -7,7 +7,7 @@ import unicodedata
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, Row, func, select
+from sqlalchemy import ColumnElement, Connection, Row, func, select, true
 
 from hall_app.house.people.acts import Role, may
 from hall_app.house.people.database import tables
@@ -20,6 +20,7 @@ __all__ = [
     "checked_name",
     "everybody",
     "found_by",
+    "how_many",
     "is_as_it_was",
     "see_that_one_is_left",
 ]
@@ -91,13 +92,7 @@ def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, .
     """People whose address or name holds `wanted`, those with roles first, then by address; `most` at most."""
     user, role = tables.user, tables.role
     ranks = select(role.c.user, func.count().label("count")).group_by(role.c.user).subquery()
-    query = select(user).outerjoin(ranks, ranks.c.user == user.c.id)
-    if wanted:
-        part = wanted.casefold()
-        query = query.where(
-            user.c.address.contains(part, autoescape=True)
-            | func.lower(user.c.name).contains(part, autoescape=True)
-        )
+    query = select(user).outerjoin(ranks, ranks.c.user == user.c.id).where(_holds(wanted))
     order = (func.coalesce(ranks.c.count, 0) == 0, user.c.address)
     rows = connection.execute(query.order_by(*order).limit(most)).all()
     given: dict[str, set[Role]] = {}
@@ -105,6 +100,20 @@ def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, .
     for whose, name in connection.execute(select(role.c.user, role.c.role).where(role.c.user.in_(ids))):
         given.setdefault(whose, set()).add(Role(name))
     return tuple(_person(row, frozenset(given.get(row.id, ()))) for row in rows)
+
+
+def how_many(connection: Connection, wanted: str) -> int:
+    """People whose address or name holds `wanted`."""
+    query = select(func.count()).select_from(tables.user).where(_holds(wanted))
+    return connection.execute(query).scalar_one()
+
+
+def _holds(wanted: str) -> ColumnElement[bool]:
+    user, part = tables.user, wanted.casefold()
+    if not part:
+        return true()
+    name = func.lower(user.c.name).contains(part, autoescape=True)
+    return user.c.address.contains(part, autoescape=True) | name
 
 
 def see_that_one_is_left(connection: Connection) -> None:

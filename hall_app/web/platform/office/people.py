@@ -14,6 +14,7 @@ from hall_app.web.platform.office.table import office_page, rows
 __all__ = ["people_deeds", "people_readings"]
 
 ENTRIES = 100  # of the journal on a page
+LISTED = 200  # people on a page: others are found by their address or name
 
 
 def people_readings(counter: Counter) -> tuple[Reading, ...]:
@@ -48,7 +49,7 @@ class _Rooms:
         self._people = counter.people
 
     def everybody(self, asking: Asking) -> list[dict[str, Any]]:
-        return [_told(one) for one in self._people.accounts.all(asking.query.get("q", ""))]
+        return [_told(one) for one in self._people.accounts.all(asking.query.get("q", ""), LISTED)]
 
     def one(self, asking: Asking) -> dict[str, Any]:
         person = self._people.accounts.of(asking.names["key"])
@@ -102,7 +103,8 @@ class _Rooms:
         return {"id": asking.names["key"], "second_factor": False}
 
     def everybody_page(self, asking: Asking) -> Shown:
-        word = asking.word
+        word, wanted = asking.word, asking.query.get("q", "")
+        found = self._people.accounts.all(wanted, LISTED)
         lines = [
             (
                 f'<a href="{asking.address(f"/office/people/{one.id}")}">{escape(one.address)}</a>',
@@ -110,7 +112,7 @@ class _Rooms:
                 _roles(asking, one) or word("参观者", "Visitor"),
                 word("已关闭", "Closed") if one.closed else word("有", "on") if one.second_factor else "–",
             )
-            for one in self._people.accounts.all(asking.query.get("q", ""))
+            for one in found
         ]
         heads = (
             word("邮箱", "Address"),
@@ -128,9 +130,27 @@ class _Rooms:
             "A new account has no password: its page gives a one-time code, by which its owner sets one at /me/open.",
         )
         title = word("人员与角色", "People and roles")
-        inside = f"""{rows(title, heads, lines)}<h2 class="small">{word("新建", "New")}</h2>
+        listed = self._search(asking, wanted) + rows(title, heads, lines)
+        inside = f"""{listed}<h2 class="small">{word("新建", "New")}</h2>
 <div class="desk"><p class="quiet">{told}</p>{new}</div>"""
-        return office_page(asking, title, inside, path="people")
+        return office_page(asking, title, inside, path="people", query={"q": wanted} if wanted else None)
+
+    def _search(self, asking: Asking, wanted: str) -> str:
+        """The form by which people are found, and how many there are."""
+        word, whole = asking.word, self._people.accounts.count()
+        count = self._people.accounts.count(wanted) if wanted else whole
+        told = word(f"共 {whole} 个账户", f"{whole} accounts in all")
+        if wanted:
+            told = word(f"共 {whole} 个账户，符合的有 {count} 个", f"{count} of {whole} accounts")
+        if count > LISTED:
+            told += word(
+                f"，只列出前 {LISTED} 个，其余请查找", f": the first {LISTED} are listed, search for others"
+            )
+        return f"""<form class="find large" action="/office/people" id="form-search">
+<input type="hidden" name="lang" value="{asking.lang}">
+<label class="unseen" for="people-q">{word("邮箱或称呼", "Address or name")}</label>
+<input type="search" id="people-q" name="q" value="{escape(wanted)}" maxlength="200" autocomplete="off">
+<button>{word("查找", "Find")}</button></form><p class="quiet" role="status">{told}</p>"""
 
     def one_page(self, asking: Asking) -> Shown:
         word, person = asking.word, self._people.accounts.of(asking.names["key"])
