@@ -69,6 +69,39 @@ def unasked(tmp_path, quick_hashes):
         yield found
 
 
+def test_what_was_refused_is_not_told_as_done(unasked):
+    """Nor is it an attempt of somebody who may not: the journal has no row of it."""
+    one = clerk(unasked, unasked.people, Role.ADMINISTRATOR)
+
+    def own() -> list[tuple[str, str]]:
+        return [
+            (entry.act, entry.subject)
+            for entry in unasked.people.journal.entries()
+            if entry.who == one.person and entry.act not in ("sign up", "sign in")
+        ]
+
+    assert one.api("tokens/7/revoke", {}).status == 400
+    assert one.api("collection/chest/text", {"file": "text.en.md", "text": "x", "tag": "a-b"}).status == 409
+    assert one.api("collection/chest/drop", {}).status == 404
+    assert one.api("questionnaires/garment/analysis").status == 400
+    (unasked.content / "exhibits" / "linked").symlink_to(unasked.content / "exhibits" / "chest")
+    assert one.api("backups", {}).status == 400
+    (unasked.content / "exhibits" / "linked").unlink()
+    assert own() == []
+    name = one.told("backups", {})["name"]
+    file = unasked.data / "backups" / name
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-9])
+    assert one.api(f"backups/{name}/restore", {"name": name}).status == 400
+    assert not list((unasked.data / "restored").glob("*"))
+    assert own() == [("backup", f"make {name}")]
+    one.told("tokens", {"label": "for the paper"})
+    one.told("tokens/1/revoke", {})
+    one.told("collection/chest/text", {"file": "text.en.md", "text": "A chest.\n"})
+    one.told("collection/chest/drop", {})
+    assert [act for act, _ in own()] == ["draft", "draft", "tokens", "tokens", "backup"]
+
+
 def test_answers_are_counted_and_handed_out(unasked):
     one = clerk(unasked, unasked.people, Role.RESEARCHER)
     (told,) = one.told("questionnaires")

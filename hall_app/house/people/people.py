@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from hall_app.house.people.database import PEOPLE_FILE, Ledger
@@ -46,9 +48,18 @@ class People:
         self.take_copy = self._ledger.take_copy
 
     def note(self, who: str, act: str, subject: str) -> None:
-        """Write down what is about to be done elsewhere, in the survey's own store."""
-        with self._ledger.change(who, act, subject):
+        """Write down what was done elsewhere and took long, or is handed out now."""
+        with self.noting(who, act, subject):
             pass
+
+    @contextmanager
+    def noting(self, who: str, act: str, subject: str) -> Iterator[None]:
+        """Write down what the block does elsewhere: in files, in the survey's store. What fails in it leaves no row.
+
+        Nothing else of people is changed meanwhile: it is for what is done at once.
+        """
+        with self._ledger.change(who, act, subject):
+            yield
 
     def copy_of(self, person: Person) -> bytes:
         """All that is kept of a person, as a ZIP; that it was taken is written down."""

@@ -91,11 +91,11 @@ class _Rooms:
             while (self._folder / name).exists():
                 number += 1
                 name = f"{stem}-{number}.zip"
-            self._people.note(asking.person.id, "backup", f"make {name}")
             try:
                 made = back_up(self._folder / name, holdings)
             except (ArchiveError, SurveyError, OSError) as error:
                 raise PeopleError("backup-failed", why=_plain(error, self._folder)) from None
+            self._people.note(asking.person.id, "backup", f"make {name}")
         return _told(self._folder / name) | {"people": made.people, "answers": made.answers}
 
     def file(self, asking: Asking) -> Download:
@@ -105,8 +105,8 @@ class _Rooms:
 
     def remove(self, asking: Asking) -> dict[str, Any]:
         path = self._path(asking)
-        self._people.note(asking.person.id, "backup", f"remove {path.name}")
-        path.unlink(missing_ok=True)
+        with self._people.noting(asking.person.id, "backup", f"remove {path.name}"):
+            path.unlink(missing_ok=True)
         return {"name": path.name}
 
     def restore(self, asking: Asking) -> dict[str, Any]:
@@ -120,7 +120,6 @@ class _Rooms:
             while home.exists():
                 number += 1
                 home = home.with_name(f"{path.stem}-{number}")
-            self._people.note(asking.person.id, "backup", f"restore {path.name}")
             home.mkdir(mode=0o700, parents=True)
             try:
                 data = home / "data"
@@ -128,6 +127,7 @@ class _Rooms:
             except (ArchiveError, SurveyError, OSError) as error:
                 shutil.rmtree(home, ignore_errors=True)
                 raise PeopleError("backup-failed", why=_plain(error, self._folder)) from None
+            self._people.note(asking.person.id, "backup", f"restore {path.name}")
         return {
             "name": path.name,
             "content": str(home / "content"),

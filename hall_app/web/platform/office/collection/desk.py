@@ -98,9 +98,9 @@ class Desk:
         self, asking: Asking, key: str, files: Mapping[str, bytes | None], tags: Mapping[str, str]
     ) -> None:
         self._check_place(asking, key, files.get(TOML))
-        self.people.note(asking.person.id, "draft", key)
         try:
-            with self.drafts.lock:
+            # This lock before the journal's, as in publication.
+            with self.drafts.lock, self.people.noting(asking.person.id, "draft", key):
                 try:
                     self.drafts.set(asking.person.id, key, files, tags)
                 except PeopleError as error:

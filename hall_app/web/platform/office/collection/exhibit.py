@@ -80,8 +80,8 @@ class Exhibits:
 
     def drop(self, asking: Asking) -> dict[str, Any]:
         key = self._desk.key(asking)
-        self._desk.people.note(asking.person.id, "draft", key)
-        self._desk.drafts.drop(key)
+        with self._desk.drafts.lock, self._desk.people.noting(asking.person.id, "draft", key):
+            self._desk.drafts.drop(key)
         self._desk.publication.tidy()
         return {"id": key}
 

@@ -76,8 +76,8 @@ class Listing:
         quoted = {lang: _quoted(text) for lang, text in titles.items()}
         table = _NEW.format(**quoted, x=f"{start.x + 1.5:g}", z=f"{start.z:g}")
         texts = {f"text.{lang}.md": f"{text}\n".encode() for lang, text in titles.items()}
-        desk.people.note(asking.person.id, "draft", key)
-        desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
+        with desk.drafts.lock, desk.people.noting(asking.person.id, "draft", key):
+            desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
         return {"id": key}
 
     def page(self, asking: Asking) -> Shown:
