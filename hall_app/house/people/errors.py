@@ -129,6 +129,14 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "没有这项预约，可能已取消。",
         "There is no such reservation: it may have been cancelled already.",
     ),
+    "booking-cancelled": (
+        "这次预约已取消；要重新预约，请再提交本页的表单。",
+        "That reservation was cancelled: to book anew, send the form of this page.",
+    ),
+    "arrived": (
+        "您已签到，不能再取消；如有误，请联系前台。",
+        "You have been checked in, and this can no longer be cancelled: tell the desk if it is a mistake.",
+    ),
     "occasion-slots": (
         "每段至少 5 分钟，一次最多 {most} 段。",
         "A slot has 5 minutes at least, and {most} slots are planned at once at most.",

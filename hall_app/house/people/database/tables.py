@@ -34,6 +34,7 @@ __all__ = [
     "revision",
     "role",
     "session",
+    "spent_form",
     "user",
 ]
 
@@ -155,6 +156,15 @@ booking = Table(
     Column("made", DateTime(timezone=True), nullable=False),
     Column("arrived", DateTime(timezone=True)),
     UniqueConstraint("occasion", "user", name="booking_once"),
+)
+
+# Keys of forms whose booking was cancelled: sent again, such a form books nothing.
+spent_form = Table(
+    "spent_form",
+    metadata,
+    Column("user", ForeignKey("user.id"), primary_key=True),
+    Column("occasion", ForeignKey("occasion.id"), primary_key=True),
+    Column("key", String(64), primary_key=True),
 )
 
 # What became of a suggestion of the questionnaires. `id` is its answer's pseudonym and the module: never the withdrawal

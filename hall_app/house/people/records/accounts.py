@@ -262,6 +262,7 @@ def _delete(connection: Connection, person: str) -> None:
         tables.favourite,
         tables.look,
         tables.answer_code,
+        tables.spent_form,
     ):
         connection.execute(delete(table).where(table.c.user == person))
     connection.execute(delete(tables.user).where(tables.user.c.id == person))
