@@ -79,6 +79,8 @@ class Stock:
             if not kept.exists():
                 kept.write_bytes(self._backup)
             shutil.rmtree(self.counter.data / "restored", ignore_errors=True)
+        elif path.startswith("restored/"):
+            (self.counter.data / "restored" / "hall-20200101-000000").mkdir(parents=True, exist_ok=True)
 
     def _tell(self, path: str, given: object = None) -> Any:
         """As Clerk.told, and marked as the stock's own."""
@@ -198,6 +200,8 @@ class Stock:
         for path in ("GET backups/{key}/file", "POST backups/{key}/remove", "POST backups/{key}/restore"):
             self.names[path] = {"key": [self._name]}
         self.given["POST backups/{key}/restore"] = {"name": self._name}
+        self.names["POST restored/{key}/remove"] = {"key": ["hall-20200101-000000"]}
+        self.given["POST restored/{key}/remove"] = {"name": "hall-20200101-000000"}
 
     def _bakes(self) -> None:
         """One that runs, which may be stopped, and one that failed, which may be tried again."""

@@ -44,7 +44,7 @@ READ = {
     "questionnaires": ["questionnaires"],
     "analysis": ["questionnaires/{key}/analysis"],
     "export": ["questionnaires/{key}/export"],
-    "backup": ["backups", "backups/{key}/file"],
+    "backup": ["backups", "backups/{key}/file", "restored"],
     "people": ["people", "people/{key}"],
     "audit": ["audit"],
     "events": ["events"],
@@ -65,7 +65,7 @@ DONE = {
     "publish": ["collection/{key}/publish"],
     "undo": ["collection/{key}/undo"],
     "bake": ["bakes/{key}/stop", "bakes/{key}/again"],
-    "backup": ["backups", "backups/{key}/remove", "backups/{key}/restore"],
+    "backup": ["backups", "backups/{key}/remove", "backups/{key}/restore", "restored/{key}/remove"],
     "people": [
         "people",
         "people/{key}/code",

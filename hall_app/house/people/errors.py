@@ -279,6 +279,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "请照抄备份的名称以确认恢复。",
         "Type the name of the backup to confirm that it is to be restored.",
     ),
+    "remove-confirm": (
+        "请照抄名称以确认删除。",
+        "Type the name of the house to confirm that it is to be removed.",
+    ),
     "no-questionnaire": (
         "没有这份问卷，请从列表中选择。",
         "There is no such questionnaire: choose one of the list.",
