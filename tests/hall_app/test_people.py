@@ -12,6 +12,7 @@ import time
 import zipfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from datetime import timedelta
 from pathlib import Path
 
 import argon2
@@ -22,7 +23,7 @@ from sqlalchemy.exc import DBAPIError
 
 from hall_app.house.people import ACTS, OWN_ACTS, People, PeopleError, Role, existing_people, may
 from hall_app.house.people.database import HEAD, Ledger, tables
-from hall_app.house.people.records import OFFICE_HOURS, RECOVERY_CODES
+from hall_app.house.people.records import OFFICE_HOURS, RECOVERY_CODES, Plan
 from survey.errors import StoreError, SurveyError
 from survey.export import pseudonym
 from survey.store.database import now
@@ -563,6 +564,33 @@ def test_a_copy_holds_all_but_secrets(people):
     ]
     for secret in (token, PASSWORD, "$argon2"):
         assert secret not in "".join(files.values())
+
+
+def test_a_copy_holds_what_names_the_person_elsewhere(people):
+    keeper = staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = staff(people, ADDRESS, Role.CURATOR)
+    begins = now() + timedelta(days=2)
+    plan = Plan("activity", "讲座", "A talk", begins, begins + timedelta(hours=1), 5, 2)
+    (occasion,) = people.occasions.plan(keeper.id, plan)
+    before = people.bookings.book(keeper.id, occasion, 1, "keeper's form")
+    people.bookings.cancel(keeper.id, "reservations", before.id)  # SQLite gives its number again
+    booked = people.bookings.book(person.id, occasion, 1, "a form")
+    people.bookings.arrive(keeper.id, booked.id, here=True)
+    people.followups.set(person.id, "a1.culture", "done", "larger letters")
+    people.followups.set(keeper.id, "a2.culture", "open", "of another's")
+    with people.revisions.adding(person.id, "publish", "gown", {"exhibit.toml": ("", "1")}):
+        pass
+    drafted = [{"exhibit": "robe", "at": "2026-11-28T10:00:00+00:00"}]
+    with zipfile.ZipFile(io.BytesIO(people.copy_of(person, drafts=drafted))) as archive:
+        files = {name: archive.read(name).decode() for name in archive.namelist()}
+    assert [one["note"] for one in json.loads(files["followups.json"])] == ["larger letters"]
+    assert [one["exhibit"] for one in json.loads(files["revisions.json"])] == ["gown"]
+    assert json.loads(files["drafts.json"]) == drafted
+    told = [(entry["act"], entry["subject"]) for entry in json.loads(files["journal.json"])]
+    assert ("check-in", f"booking {booked.id}") in told
+    assert "reservations" not in {act for act, _ in told}, "a number that was another's is no longer that"
+    assert "authenticator" in files["README.txt"]
+    assert "验证器密钥" in files["README.txt"]
 
 
 def test_two_stores_may_share_a_database_server_and_an_older_schema_is_brought_up(database):

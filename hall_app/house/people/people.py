@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -61,8 +61,11 @@ class People:
         with self._ledger.change(who, act, subject):
             yield
 
-    def copy_of(self, person: Person) -> bytes:
-        """All that is kept of a person, as a ZIP; that it was taken is written down."""
+    def copy_of(self, person: Person, drafts: Sequence[Mapping[str, str]] = ()) -> bytes:
+        """All that is kept of a person, as a ZIP; that it was taken is written down.
+
+        drafts: of exhibits that name him, which lie in the data folder and not here.
+        """
         with self._ledger.change(person.id, "take copy", person.id):
             pass
         kept, booked = self.keepsakes, self.bookings.of(person.id)
@@ -75,7 +78,10 @@ class People:
                 "bookings": booked,
                 "occasions": [self.occasions.of(one.occasion) for one in booked],
                 "answers": self.answer_codes.of(person.id),
-                "journal": self.journal.about(person.id),
+                "followups": [one for one in self.followups.all().values() if one.by == person.id],
+                "revisions": self.revisions.by(person.id),
+                "drafts": drafts,
+                "journal": self.journal.about(person.id, booked),
             },
         )
 

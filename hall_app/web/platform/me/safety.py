@@ -101,7 +101,12 @@ class Safety:
 
     def copy(self, asking: Asking) -> Download:
         self._pace.take("copy", asking.person.id)
-        return Download(self._people.copy_of(asking.person), "my-data.zip", "application/zip")
+        from hall_app.house.drafts import Drafts, Shelf
+
+        content, data, person = self._house.content.folder, self._house.data, asking.person
+        drafts = Drafts(content, data, Shelf(data / "shelf", self._house.quota)).all().values()
+        mine = [{"exhibit": one.exhibit, "at": one.at} for one in drafts if one.by == person.id]
+        return Download(self._people.copy_of(person, mine), "my-data.zip", "application/zip")
 
     def delete_page(self, asking: Asking) -> Shown:
         word = asking.word
