@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from datetime import date, datetime
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, func, select, update
+from sqlalchemy import Connection, Engine, delete, func, select, update
 
 from survey.errors import AnswerError, SurveyError
 from survey.questionnaire import Answer, Questionnaire
@@ -241,9 +241,13 @@ class Store:
             see_that_it_takes(connection, path, ANSWERS)
 
     def take_copy(self, path: Path) -> int:
-        """Take in such a copy, whole or not at all. Answers in it. Raises StoreError."""
+        """Take in such a copy, whole or not at all. Answers in it. Raises StoreError.
+
+        Tokens end: one that was revoked after the copy was made must not be good again.
+        """
         with self._write() as connection:
             count = take_copy(connection, path, ANSWERS)
+            connection.execute(delete(tables.token))
             note(connection, "restore", path.name, count)
         return count
 

@@ -54,6 +54,7 @@ class Stock:
     asked: dict[str, dict[str, list[str]]] = field(default_factory=dict)
     _texts: dict[str, bytes] = field(default_factory=dict)
     _name: str = ""
+    _person: str = ""
     _backup: bytes = b""
 
     @classmethod
@@ -71,11 +72,15 @@ class Stock:
         """Before a deed is asked for at that path of the API: what the last one did to its thing is taken back."""
         if path.startswith("collection/chest/"):
             self._exhibit_again(path.rpartition("/")[2])
+        elif path == f"people/{self._person}/code":
+            self.counter.people.accounts.close("console", self._person, closed=False)
         elif path.startswith("backups/"):
             kept = self.counter.data / "backups" / self._name
             if not kept.exists():
                 kept.write_bytes(self._backup)
             shutil.rmtree(self.counter.data / "restored", ignore_errors=True)
+        elif path.startswith("restored/"):
+            (self.counter.data / "restored" / "hall-20200101-000000").mkdir(parents=True, exist_ok=True)
 
     def _tell(self, path: str, given: object = None) -> Any:
         """As Clerk.told, and marked as the stock's own."""
@@ -133,11 +138,15 @@ class Stock:
     def _people(self) -> None:
         people = self.counter.people
         person = people.accounts.make("console", "stock@example.org")
+        self._person = person.id
         people.accounts.use_code(people.accounts.code_for("console", person.id), PASSWORD)
         people.sessions.sign_in("stock@example.org", PASSWORD, "", office=False)
         for path in ("", "/roles", "/code", "/close", "/open", "/sign-out", "/second-factor"):
             for method in ("GET", "POST"):
                 self.names[f"{method} people/{{key}}{path}"] = {"key": [person.id]}
+        leaving = people.accounts.make("console", "leaving@example.org")
+        self.names["POST people/{key}/delete"] = {"key": [leaving.id]}
+        self.given["POST people/{key}/delete"] = {"address": leaving.address}
         self.asked["GET people"] = {"q": ["stock"]}
         self.given |= {
             "POST people": {"address": "somebody@example.org", "name": "Somebody"},
@@ -199,6 +208,8 @@ class Stock:
         for path in ("GET backups/{key}/file", "POST backups/{key}/remove", "POST backups/{key}/restore"):
             self.names[path] = {"key": [self._name]}
         self.given["POST backups/{key}/restore"] = {"name": self._name}
+        self.names["POST restored/{key}/remove"] = {"key": ["hall-20200101-000000"]}
+        self.given["POST restored/{key}/remove"] = {"name": "hall-20200101-000000"}
 
     def _bakes(self) -> None:
         """One that runs, which may be stopped, and one that failed, which may be tried again."""

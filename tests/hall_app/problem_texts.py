@@ -59,7 +59,7 @@ TELLERS: Mapping[tuple[str, str], Sequence[int] | None] = {
 }
 
 # These are given what is wrong and its remedy in one, and whoever catches them parts it there; ValueError in CHECKED.
-PARTED = {"MissingFontError": " – ", "ValueError": "; "}
+PARTED = {"ArchiveError": " – ", "MissingFontError": " – ", "ValueError": "; "}
 CHECKED = "survey/questionnaire/definition.py"
 
 # Tables of texts, also in functions: all strings that are their values.
@@ -103,6 +103,7 @@ PASSED_ON = {
     ("hall_app/room/bake/build.py", "bake_room"),  # what the light is doing
     ("hall_app/show/exhibits.py", "drawn_exhibits"),  # of a GlbError
     ("hall_app/web/platform/office/backups.py", "make"),  # of the databases
+    ("hall_app/web/platform/office/backups.py", "remove_house"),  # of the system
     ("hall_app/web/platform/office/backups.py", "restore"),
     ("hall_app/web/platform/office/collection/desk.py", "_write"),  # of the system
     ("hall_app/web/platform/office/questionnaires.py", "_made"),  # of the survey's answers

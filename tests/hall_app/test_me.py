@@ -8,6 +8,7 @@ import json
 import re
 import subprocess
 import sys
+import time
 import zipfile
 from urllib.parse import urlencode
 
@@ -271,7 +272,16 @@ def test_the_second_factor_is_set_up_and_asked_for(plain_hall):
     assert without.status == 400
     other.send("/me", "form-sign-in", address=address, password=PASSWORD, code=codes[0])
     assert address in other.get("/me").text
-    off = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD)
+    without = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD)
+    assert without.status == 400
+    assert "the authenticator that is on" in without.text
+    page = visitor.get("/me/second-factor?lang=en")  # another phone
+    newer = page.form("form-second-factor")["secret"]
+    given = {"code": pyotp.TOTP(newer).now(), "password": PASSWORD}
+    assert visitor.send(page, "form-second-factor", **given).status == 400
+    told = visitor.send(page, "form-second-factor", present=codes[1], **given)
+    codes = re.findall(r"<code>([-A-Z0-9]{14})</code>", told.text)
+    off = visitor.send("/me?lang=en", "form-factor-off", password=PASSWORD, code=codes[0])
     assert "The second factor is off" in off.text
 
 
@@ -326,6 +336,110 @@ def test_guessing_is_slowed_and_says_for_how_long(plain_hall):
     assert theirs in other.get("/me").text, "others go on"
 
 
+def joined(counter) -> tuple[Visitor, str]:
+    """A visitor of the counter who has just made an account, and its address."""
+    visitor, address = Visitor(counter.url), f"paced{next(NUMBERS)}@example.org"
+    fields = {"address": address, "password": PASSWORD, "again": PASSWORD}
+    page = visitor.get("/me/register?lang=en").form("form-register")
+    made = visitor.post("/me/register", page | fields, X_Forwarded_For=f"192.0.2.{next(NUMBERS) % 250}")
+    assert made.status == 303
+    return visitor, address
+
+
+def tried(visitor: Visitor, address: str, password: str, network: str) -> int:
+    """The answer to signing in from there."""
+    given = visitor.get("/me/open?lang=en").form("form-open")  # any form of the browser's has its seal
+    return visitor.post(
+        "/me/sign-in", given | {"address": address, "password": password}, X_Forwarded_For=network
+    ).status
+
+
+@pytest.fixture
+def later(monkeypatch):
+    """Let time pass, for what counts tries."""
+    gone, clock = [0.0], time.time
+    monkeypatch.setattr(time, "time", lambda: clock() + gone[0])
+
+    def by(seconds: float) -> None:
+        gone[0] += seconds
+
+    return by
+
+
+def test_signing_in_rightly_is_never_counted_against_an_account(counter):
+    _, address = joined(counter)
+    assert {tried(Visitor(counter.url), address, PASSWORD, "198.51.100.1") for _ in range(30)} == {303}
+
+
+def test_who_guesses_from_one_address_shuts_nobody_else_out(counter, later):
+    _, address = joined(counter)
+    guesser, answers = Visitor(counter.url), []
+    for _ in range(20):
+        answers += [tried(guesser, address, "a guess at it", "198.51.100.2") for _ in range(12)]
+        later(301)
+        assert tried(Visitor(counter.url), address, "mistyped by me", "198.51.100.3") == 400
+        assert tried(Visitor(counter.url), address, PASSWORD, "198.51.100.3") == 303
+        later(301)
+    assert answers.count(400) <= 20 / 6 * RATES["account share"].amount + RATES["account share"].amount
+    assert set(answers) == {400, 429}
+
+
+def guessed_from_everywhere(counter, address: str) -> None:
+    for number in range(RATES["account"].amount // 5 + 1):
+        for _ in range(5):
+            tried(Visitor(counter.url), address, "a guess at it", f"203.0.113.{number}")
+
+
+def test_a_browser_that_was_let_in_before_is_counted_by_itself(counter):
+    visitor, address = joined(counter)
+    guessed_from_everywhere(counter, address)
+    assert tried(Visitor(counter.url), address, PASSWORD, "198.51.100.4") == 429, (
+        "the account's tries are gone"
+    )
+    visitor.send("/me?lang=en", "/me/sign-out")
+    assert tried(visitor, address, PASSWORD, "198.51.100.4") == 303
+    visitor.send("/me?lang=en", "/me/sign-out")
+    own = [tried(visitor, address, "mistyped by me", "198.51.100.4") for _ in range(11)]
+    assert own == [400] * RATES["account from here"].amount + [429]
+
+
+def test_what_a_browser_is_known_by_is_of_one_account_and_of_its_password(counter):
+    visitor, address = joined(counter)
+    other, _ = joined(counter)
+    guessed_from_everywhere(counter, address)
+    for mark in (other.cookies["hall-known"], visitor.cookies["hall-known"][:-1] + "?", "x", "a.b", "."):
+        stranger = Visitor(counter.url, {"hall-known": mark})
+        assert tried(stranger, address, PASSWORD, "198.51.100.5") == 429
+    former = visitor.cookies["hall-known"]
+    assert address not in former
+    new = "a coat of green gauze"
+    visitor.send("/me?lang=en", "form-password", old=PASSWORD, password=new, again=new)
+    assert tried(Visitor(counter.url, {"hall-known": former}), address, new, "198.51.100.5") == 429
+    visitor.send("/me?lang=en", "/me/sign-out")
+    assert tried(visitor, address, new, "198.51.100.5") == 303, "who changed it is known by the new one"
+
+
+def test_the_mark_of_a_browser_is_read_by_no_script(counter):
+    visitor, address = joined(counter)
+    given = visitor.get("/me?lang=en").form("form-profile")
+    answer = visitor.post("/me/sign-in", given | {"address": address, "password": PASSWORD})
+    (mark,) = [one for one in answer.headers.get_all("Set-Cookie") if one.startswith("hall-known=")]
+    told = {part.strip().lower() for part in mark.split(";")}
+    assert {"httponly", "samesite=lax", "path=/"} <= told
+    assert any(part.startswith("max-age=") and int(part[8:]) > 180 * 86400 for part in told)
+
+
+def test_who_is_signed_in_is_not_hindered_by_who_guesses(counter):
+    visitor, address = joined(counter)
+    for _ in range(12):
+        tried(Visitor(counter.url), address, "a guess at it", "127.0.0.1")
+    new = "a coat of green gauze"
+    wrong = visitor.send("/me?lang=en", "form-password", old="mistyped by me", password=new, again=new)
+    assert wrong.status == 400
+    right = visitor.send("/me?lang=en", "form-password", old=PASSWORD, password=new, again=new)
+    assert "The password is changed" in right.text
+
+
 def test_an_account_is_no_condition(plain_hall):
     """Whoever has none gets no session and everything else as before."""
     stranger = Visitor(plain_hall.url)
@@ -373,5 +487,5 @@ def test_what_is_kept_is_told_before_one_makes_an_account(counter, lang):
     for figure in (VISITOR_DAYS, OFFICE_HOURS, CODE_DAYS):
         assert f" {figure} " in told.text
     assert stranger.cookies.keys() <= {"hall-form", "hall-place"}
-    for name in (OFFICE.name, VISITOR.name, "hall-form", "hall-place"):
+    for name in (OFFICE.name, VISITOR.name, "hall-form", "hall-known", "hall-place"):
         assert name in told.text, "every cookie is named"

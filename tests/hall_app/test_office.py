@@ -7,6 +7,7 @@ import json
 import re
 from datetime import UTC, datetime, timedelta
 from html import escape
+from urllib.parse import urlencode
 
 import pytest
 from content_house import EXHIBIT
@@ -45,7 +46,7 @@ READ = {
     "questionnaires": ["questionnaires"],
     "analysis": ["questionnaires/{key}/analysis"],
     "export": ["questionnaires/{key}/export"],
-    "backup": ["backups", "backups/{key}/file"],
+    "backup": ["backups", "backups/{key}/file", "restored"],
     "people": ["people", "people/{key}"],
     "audit": ["audit"],
     "events": ["events"],
@@ -66,11 +67,12 @@ DONE = {
     "publish": ["collection/{key}/publish"],
     "undo": ["collection/{key}/undo"],
     "bake": ["bakes/{key}/stop", "bakes/{key}/again"],
-    "backup": ["backups", "backups/{key}/remove", "backups/{key}/restore"],
+    "backup": ["backups", "backups/{key}/remove", "backups/{key}/restore", "restored/{key}/remove"],
     "people": [
         "people",
         "people/{key}/code",
         "people/{key}/close",
+        "people/{key}/delete",
         "people/{key}/open",
         "people/{key}/sign-out",
         "people/{key}/second-factor",
@@ -418,6 +420,50 @@ def test_people_get_roles_codes_and_are_shut_out(counter, people):
     acts = [entry["act"] for entry in one.told("audit") if entry["who"] == one.person]
     assert {"people", "roles"} <= set(acts)
     assert address in one.get("/office/audit?lang=en").text
+
+
+def test_who_stands_beyond_the_page_is_found(counter, people):
+    one, crowd = clerk(counter, people, Role.ADMINISTRATOR), next(NUMBERS)
+    for number in range(201):
+        people.accounts.make("console", f"crowd{crowd}-{number:03}@example.org", name="Of <b>the</b> crowd")
+    last = f"crowd{crowd}-200@example.org"
+    page = one.get("/office/people?lang=en")
+    assert last not in page.text
+    assert f"{people.accounts.count()} accounts in all" in page.text
+    assert "the first 200 are listed" in page.text
+    fields = page.form("form-search")
+    assert fields["q"] == ""
+    found = one.get(f"/office/people?{urlencode(fields | {'q': f'crowd{crowd}-20'})}")
+    assert last in found.text
+    assert f'value="crowd{crowd}-20"' in found.text
+    assert f"1 of {people.accounts.count()} accounts" in found.text
+    assert "are listed" not in found.text
+    assert people.accounts.count("Of <B>the") == people.accounts.count(f"crowd{crowd}-") == 201
+    nobody = one.get("/office/people?q=nobody-at-all&lang=zh")
+    assert f"共 {people.accounts.count()} 个账户，符合的有 0 个" in nobody.text
+    assert "q=nobody-at-all&amp;lang=en" in nobody.text, "the other language asks the same"
+
+
+def test_a_closed_account_is_deleted_once_its_address_was_typed(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(f"closed{next(NUMBERS)}@example.org", PASSWORD)
+    at = f"people/{person.id}"
+    one.told(f"{at}/close", {})
+    for lang, said in (("en", "This account is closed"), ("zh", "这个账户已关闭")):
+        told = one.send(f"/office/{at}?lang={lang}", f"/office/{at}/code")
+        assert told.status == 400
+        assert said in told.text
+    wrong = one.send(f"/office/{at}?lang=en", "form-delete", address="somebody@example.org")
+    assert wrong.status == 400
+    assert "Type the address" in wrong.text.partition("refused")[2]
+    assert one.api(f"{at}/delete", {}).status == 400
+    assert people.accounts.of(person.id).address == person.address
+    gone = one.send(wrong, "form-delete", address=f" {person.address.upper()}")
+    assert (gone.status, gone.address.partition("?")[0]) == (200, "/office/people")
+    assert one.api(at).status == 404
+    assert person.address not in one.get("/office/audit?lang=en").text
+    (told,) = [entry for entry in one.told("audit") if entry["subject"] == f"{person.id} deleted"]
+    assert (told["act"], told["who"]) == ("people", one.person)
 
 
 def test_tokens_are_made_shown_once_and_revoked(counter, people):

@@ -6,6 +6,7 @@ import json
 import re
 import shlex
 from html import unescape
+from pathlib import Path
 from urllib.parse import quote
 
 import event_loop
@@ -17,7 +18,8 @@ from open_counter import open_counter
 from hall_app.content import load
 from hall_app.house.baking import ROOM, Bake, BakingQueue
 from hall_app.house.people import People, Role
-from hall_app.house.safekeeping import check_archive
+from hall_app.house.safekeeping import check_archive, tidy
+from survey import Store
 
 
 @pytest.fixture
@@ -55,6 +57,7 @@ def test_a_backup_is_made_fetched_and_restored_beside(counter, administrator, tm
     assert not (counter.data / "restored").exists()
     done = one.send(page, "form-restore-0", name=told["name"])
     assert "hall serve --content" in done.text
+    assert "one-time codes and tokens are void" in done.text
     home = counter.data / "restored" / told["name"].removesuffix(".zip")
     assert load(home / "content").exhibit("chest") is not None
     people = People(home / "data")
@@ -62,6 +65,17 @@ def test_a_backup_is_made_fetched_and_restored_beside(counter, administrator, tm
         assert people.accounts.of(one.person).roles == {Role.ADMINISTRATOR}
     finally:
         people.close()
+    assert home.name in [house["name"] for house in one.told("restored")]
+    page = one.get("/office/backups?lang=en")
+    at = f"/office/restored/{home.name}/remove"
+    wrong = one.send(page, at, name="another")
+    assert wrong.status == 400
+    assert "Type the name of the house" in wrong.text
+    assert home.is_dir()
+    assert home.name not in one.send(wrong, at, name=home.name).text.partition("Restored houses")[2]
+    assert not home.exists()
+    for name in ("..", "backups", "hall-20200101-000000"):
+        assert one.api(f"restored/{name}/remove", {"name": name}).status == 404
     acts = [entry["subject"] for entry in one.told("audit") if entry["act"] == "backup"]
     assert any(subject.startswith("fetch ") for subject in acts)
     one.told(f"backups/{told['name']}/remove", {})
@@ -79,6 +93,74 @@ def unasked(tmp_path, quick_hashes):
     """A counter of its own: nobody has answered anything there."""
     with open_counter(tmp_path) as found:
         yield found
+
+
+def leave(folder: Path) -> set[Path]:
+    """What a backup leaves that is killed."""
+    copy = folder / ".backup-killed"
+    copy.mkdir(parents=True)
+    (copy / "people.sqlite").write_bytes(b"addresses")
+    (folder / "hall-20200101-000000.zip.part").write_bytes(b"half of it")
+    return {copy, folder / "hall-20200101-000000.zip.part"}
+
+
+def test_what_killed_backups_left_is_tidied_away(tmp_path, quick_hashes):
+    left = leave(tmp_path / "data" / "backups")
+    with open_counter(tmp_path) as counter:
+        assert not any(path.exists() for path in left), "when the house is opened"
+        one = clerk(counter, counter.people, Role.ADMINISTRATOR)
+        left = leave(counter.data / "backups")
+        kept = counter.data / "backups" / "notes.txt"
+        kept.write_text("of the administrator's own")
+        name = one.told("backups", {})["name"]
+        assert {path.name for path in kept.parent.iterdir()} == {name, kept.name}, "and before a backup"
+
+
+def test_a_backup_that_is_at_work_is_none_of_the_leavings(tmp_path, quick_hashes, monkeypatch):
+    seen, copy_to = [], Store.copy_to
+
+    def copied(store: Store, path: Path) -> int:
+        tidy(path.parents[1])  # as another house would that is opened meanwhile
+        seen.append(path.parent.is_dir())
+        return copy_to(store, path)
+
+    monkeypatch.setattr(Store, "copy_to", copied)
+    with open_counter(tmp_path) as counter:
+        clerk(counter, counter.people, Role.ADMINISTRATOR).told("backups", {})
+    assert seen == [True]
+
+
+def test_what_was_refused_is_not_told_as_done(unasked):
+    """Nor is it an attempt of somebody who may not: the journal has no row of it."""
+    one = clerk(unasked, unasked.people, Role.ADMINISTRATOR)
+
+    def own() -> list[tuple[str, str]]:
+        return [
+            (entry.act, entry.subject)
+            for entry in unasked.people.journal.entries()
+            if entry.who == one.person and entry.act not in ("sign up", "sign in")
+        ]
+
+    assert one.api("tokens/7/revoke", {}).status == 400
+    assert one.api("collection/chest/text", {"file": "text.en.md", "text": "x", "tag": "a-b"}).status == 409
+    assert one.api("collection/chest/drop", {}).status == 404
+    assert one.api("questionnaires/garment/analysis").status == 400
+    (unasked.content / "exhibits" / "linked").symlink_to(unasked.content / "exhibits" / "chest")
+    assert one.api("backups", {}).status == 400
+    (unasked.content / "exhibits" / "linked").unlink()
+    assert own() == []
+    name = one.told("backups", {})["name"]
+    file = unasked.data / "backups" / name
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-9])
+    assert one.api(f"backups/{name}/restore", {"name": name}).status == 400
+    assert not list((unasked.data / "restored").glob("*"))
+    assert own() == [("backup", f"make {name}")]
+    one.told("tokens", {"label": "for the paper"})
+    one.told("tokens/1/revoke", {})
+    one.told("collection/chest/text", {"file": "text.en.md", "text": "A chest.\n"})
+    one.told("collection/chest/drop", {})
+    assert [act for act, _ in own()] == ["draft", "draft", "tokens", "tokens", "backup"]
 
 
 def test_answers_are_counted_and_handed_out(unasked):

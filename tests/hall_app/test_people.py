@@ -8,11 +8,14 @@ import re
 import subprocess
 import sys
 import threading
+import time
 import zipfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from datetime import timedelta
 from pathlib import Path
 
+import argon2
 import pyotp
 import pytest
 from sqlalchemy import create_engine, inspect, select, text, update
@@ -20,7 +23,7 @@ from sqlalchemy.exc import DBAPIError
 
 from hall_app.house.people import ACTS, OWN_ACTS, People, PeopleError, Role, existing_people, may
 from hall_app.house.people.database import HEAD, Ledger, tables
-from hall_app.house.people.records import OFFICE_HOURS, RECOVERY_CODES
+from hall_app.house.people.records import OFFICE_HOURS, RECOVERY_CODES, Plan
 from survey.errors import StoreError, SurveyError
 from survey.export import pseudonym
 from survey.store.database import now
@@ -274,6 +277,92 @@ def test_wrong_passwords_and_unknown_addresses_are_told_alike(people):
     assert len(told) == 1
 
 
+@pytest.fixture
+def meanwhile(monkeypatch):
+    """Have something done once, while the next password is looked at."""
+
+    def once(deed) -> None:
+        verify = argon2.PasswordHasher.verify
+
+        def slowly(self, *given) -> bool:
+            right = verify(self, *given)
+            monkeypatch.setattr(argon2.PasswordHasher, "verify", verify)
+            deed()
+            return right
+
+        monkeypatch.setattr(argon2.PasswordHasher, "verify", slowly)
+
+    return once
+
+
+SINCE = "a password set meanwhile"
+
+
+def changed_meanwhile(people: People, person, how: str) -> None:
+    secret = pyotp.random_base32()
+    match how:
+        case "password":
+            people.accounts.set_password(person, PASSWORD, SINCE)
+        case "code":
+            people.accounts.use_code(people.accounts.code_for("console", person.id), SINCE)
+        case "closed":
+            people.accounts.close("console", person.id, closed=True)
+        case "factor":
+            people.accounts.begin_second_factor(person, PASSWORD, secret, pyotp.TOTP(secret).now())
+
+
+@pytest.mark.parametrize("how", ["password", "code", "closed", "factor"])
+def test_who_was_signing_in_while_the_account_was_changed_is_not_in(people, ledger, meanwhile, how):
+    staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    meanwhile(lambda: changed_meanwhile(people, person, how))
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, PASSWORD)
+    entry = people.journal.entries()[0]
+    assert (entry.act, entry.subject, entry.refused) == ("sign in", person.id, True)
+    assert people.sessions.of(person.id) == ()
+    if how in ("password", "code"):
+        with refused("sign-in"):
+            people.sessions.sign_in(ADDRESS, PASSWORD)
+        people.sessions.sign_in(ADDRESS, SINCE)
+
+
+@pytest.mark.parametrize("deed", ["password", "factor", "factor off", "delete"])
+def test_what_an_old_password_had_begun_is_not_done_once_there_is_a_new_one(people, meanwhile, deed):
+    person, secret = people.accounts.sign_up(ADDRESS, PASSWORD), pyotp.random_base32()
+    deeds = {
+        "password": lambda: people.accounts.set_password(person, PASSWORD, "a stranger's password"),
+        "factor": lambda: people.accounts.begin_second_factor(
+            person, PASSWORD, secret, pyotp.TOTP(secret).now()
+        ),
+        "factor off": lambda: people.accounts.end_second_factor(person, PASSWORD),
+        "delete": lambda: people.accounts.delete(person, PASSWORD),
+    }
+    meanwhile(lambda: changed_meanwhile(people, person, "code"))
+    with refused("password-wrong"):
+        deeds[deed]()
+    found, _ = people.sessions.sign_in(ADDRESS, SINCE)
+    assert not found.second_factor
+
+
+def test_a_hash_is_made_anew_where_it_is_a_weaker_one_and_nowhere_else(people, ledger):
+    def kept() -> str:
+        with ledger.read() as connection:
+            return connection.execute(select(tables.user.c.password)).scalar_one()
+
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    first = kept()
+    people.sessions.sign_in(ADDRESS, PASSWORD)
+    assert kept() == first
+    (former,) = argon2.PasswordHasher.__bases__
+    weaker = former(time_cost=2, memory_cost=8, parallelism=1).hash(PASSWORD)
+    with ledger.change("console", "people", person.id) as connection:
+        connection.execute(update(tables.user).values(password=weaker))
+    people.sessions.sign_in(ADDRESS, PASSWORD)
+    assert "t=1" in kept()
+    people.sessions.sign_in(ADDRESS, PASSWORD)
+
+
 def test_the_second_factor(people):
     person = people.accounts.sign_up(ADDRESS, PASSWORD)
     secret = pyotp.random_base32()
@@ -293,8 +382,49 @@ def test_the_second_factor(people):
     with refused("sign-in"):
         people.sessions.sign_in(ADDRESS, "wrong password", recovery[1])
     people.sessions.sign_in(ADDRESS, PASSWORD, recovery[1])  # a wrong password used up no code
-    people.accounts.end_second_factor(person, PASSWORD)
+    people.accounts.end_second_factor(person, PASSWORD, recovery[2])
     people.sessions.sign_in(ADDRESS, PASSWORD)
+
+
+def test_the_second_factor_is_replaced_and_turned_off_by_who_has_it(people):
+    person, secret, other = (
+        people.accounts.sign_up(ADDRESS, PASSWORD),
+        *(pyotp.random_base32() for _ in "ab"),
+    )
+    code = pyotp.TOTP(secret).now()
+    recovery = people.accounts.begin_second_factor(person, PASSWORD, secret, code)
+
+    def replaced(present: str) -> tuple[str, ...]:
+        return people.accounts.begin_second_factor(person, PASSWORD, other, pyotp.TOTP(other).now(), present)
+
+    for wrong in ("", "000000", code, pyotp.TOTP(other).now()):  # `code` was used to set it up
+        with refused("present-factor"):
+            replaced(wrong)
+        entry = people.journal.entries()[0]
+        assert (entry.act, entry.subject, entry.refused) == ("second factor", person.id, True)
+        with refused("present-factor"):
+            people.accounts.end_second_factor(person, PASSWORD, wrong)
+    with refused("password-wrong"):
+        people.accounts.end_second_factor(person, "wrong password", recovery[0])
+    people.sessions.sign_in(ADDRESS, PASSWORD, recovery[0])  # and none of that used it up
+    newer = replaced(recovery[1])
+    with refused("present-factor"):
+        people.accounts.end_second_factor(person, PASSWORD, recovery[2])  # of the one before
+    people.accounts.end_second_factor(person, PASSWORD, newer[0])
+    assert not people.accounts.of(person.id).second_factor
+
+
+def test_a_factor_that_was_set_up_by_who_never_proved_the_address_goes_with_a_code(people):
+    squatter, secret = people.accounts.sign_up(ADDRESS, PASSWORD), pyotp.random_base32()
+    people.accounts.begin_second_factor(squatter, PASSWORD, secret, pyotp.TOTP(secret).now())
+    opened = people.accounts.use_code(people.accounts.code_for("console", squatter.id), "her own password 1")
+    assert not opened.second_factor
+    people.sessions.sign_in(ADDRESS, "her own password 1")
+    people.accounts.begin_second_factor(opened, "her own password 1", secret, pyotp.TOTP(secret).now())
+    again = people.accounts.use_code(people.accounts.code_for("console", squatter.id), "her own password 2")
+    assert again.second_factor, "of a verified address it stays: a code stands in for the password alone"
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, "her own password 2")
 
 
 def test_one_recovery_code_sent_by_eight_at_once_lets_one_in(people):
@@ -395,6 +525,29 @@ def test_what_is_deleted_is_gone_from_every_table_and_from_the_files(people, led
             assert trace.encode() not in files
 
 
+def test_a_closed_account_gets_no_code_and_is_deleted_by_the_house(people, ledger):
+    keeper = staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD, name="Lan Yi the second")
+    people.keepsakes.keep(person.id, "gown")
+    people.accounts.close(keeper.id, person.id, closed=True)
+    with refused("account-closed") as caught:
+        people.accounts.code_for(keeper.id, person.id)
+    assert "open it again" in caught.value.text("en")
+    assert "重新开放" in caught.value.text("zh")
+    with refused("no-account"):
+        people.accounts.code_for(keeper.id, "0123456789abcdef")
+    people.accounts.remove(keeper.id, person.id)
+    for trace in (ADDRESS, "Lan Yi", "gown"):
+        assert trace not in everything(ledger)
+    told = people.journal.about(person.id)[-1]
+    assert (told.who, told.act, told.subject) == (keeper.id, "people", f"{person.id} deleted")
+    with refused("no-account"):
+        people.accounts.remove(keeper.id, person.id)
+    with refused("last-administrator"):
+        people.accounts.remove("console", keeper.id)
+    assert people.accounts.of(keeper.id) == keeper
+
+
 def test_a_copy_holds_all_but_secrets(people):
     person = people.accounts.sign_up(ADDRESS, PASSWORD, name="兰", language="zh")
     _, token = people.sessions.sign_in(ADDRESS, PASSWORD)
@@ -411,6 +564,33 @@ def test_a_copy_holds_all_but_secrets(people):
     ]
     for secret in (token, PASSWORD, "$argon2"):
         assert secret not in "".join(files.values())
+
+
+def test_a_copy_holds_what_names_the_person_elsewhere(people):
+    keeper = staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = staff(people, ADDRESS, Role.CURATOR)
+    begins = now() + timedelta(days=2)
+    plan = Plan("activity", "讲座", "A talk", begins, begins + timedelta(hours=1), 5, 2)
+    (occasion,) = people.occasions.plan(keeper.id, plan)
+    before = people.bookings.book(keeper.id, occasion, 1, "keeper's form")
+    people.bookings.cancel(keeper.id, "reservations", before.id)  # SQLite gives its number again
+    booked = people.bookings.book(person.id, occasion, 1, "a form")
+    people.bookings.arrive(keeper.id, booked.id, here=True)
+    people.followups.set(person.id, "a1.culture", "done", "larger letters")
+    people.followups.set(keeper.id, "a2.culture", "open", "of another's")
+    with people.revisions.adding(person.id, "publish", "gown", {"exhibit.toml": ("", "1")}):
+        pass
+    drafted = [{"exhibit": "robe", "at": "2026-11-28T10:00:00+00:00"}]
+    with zipfile.ZipFile(io.BytesIO(people.copy_of(person, drafts=drafted))) as archive:
+        files = {name: archive.read(name).decode() for name in archive.namelist()}
+    assert [one["note"] for one in json.loads(files["followups.json"])] == ["larger letters"]
+    assert [one["exhibit"] for one in json.loads(files["revisions.json"])] == ["gown"]
+    assert json.loads(files["drafts.json"]) == drafted
+    told = [(entry["act"], entry["subject"]) for entry in json.loads(files["journal.json"])]
+    assert ("check-in", f"booking {booked.id}") in told
+    assert "reservations" not in {act for act, _ in told}, "a number that was another's is no longer that"
+    assert "authenticator" in files["README.txt"]
+    assert "验证器密钥" in files["README.txt"]
 
 
 def test_two_stores_may_share_a_database_server_and_an_older_schema_is_brought_up(database):
@@ -503,6 +683,70 @@ def test_withdrawal_codes_leave_a_house_of_an_older_schema(database):
     again.close()
 
 
+def as_they_lie(ledger: Ledger) -> list[tuple]:
+    """Of visits, whose and what, in the order in which the database has them; in PostgreSQL with what wrote each."""
+    mark, place = ("''", "rowid") if ledger_is_sqlite(ledger) else ("CAST(xmin AS text)", "ctid")
+    with ledger.read() as connection:
+        found = connection.execute(text(f"SELECT exhibit, {mark} FROM look ORDER BY {place}"))
+        return [tuple(row) for row in found]
+
+
+def ledger_is_sqlite(ledger: Ledger) -> bool:
+    with ledger.read() as connection:
+        return connection.dialect.name == "sqlite"
+
+
+def test_a_look_is_in_no_journal_and_nothing_tells_which_came_first(people, ledger):
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.keepsakes.note_look(person.id, "gown")
+    assert people.keepsakes.looks(person.id) == (), "nothing is kept unasked"
+    people.keepsakes.set_keeping(person.id, on=True)
+    before = people.journal.entries()
+    looked = ("robe", "belt", "gown", "coat", "robe")
+    for exhibit in looked:
+        people.keepsakes.note_look(person.id, exhibit)
+    assert people.journal.entries() == before
+    assert [one.exhibit for one in people.keepsakes.looks(person.id)] == sorted({*looked})
+    if ledger_is_sqlite(ledger):
+        assert [exhibit for exhibit, _ in as_they_lie(ledger)] == sorted({*looked})
+    assert len({mark for _, mark in as_they_lie(ledger)}) == 1, "one transaction wrote them all"
+    people.keepsakes.set_keeping(person.id, on=False)
+    assert people.keepsakes.looks(person.id) == ()
+    switched = [entry.subject for entry in people.journal.about(person.id) if entry.act == "visits"]
+    assert switched == [f"{person.id} on", f"{person.id} off"]
+
+
+def test_a_look_that_comes_while_visits_are_turned_off_is_not_kept(people, ledger):
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.keepsakes.set_keeping(person.id, on=True)
+    looking = threading.Thread(target=people.keepsakes.note_look, args=(person.id, "gown"))
+    with ledger.change(person.id, "visits", person.id) as connection:
+        connection.execute(update(tables.user).values(keeps_looks=0))
+        looking.start()
+        time.sleep(0.3)  # it has seen that visits are kept, and waits for its turn to write
+    looking.join()
+    assert people.keepsakes.looks(person.id) == ()
+
+
+def test_looks_leave_the_journal_of_a_house_of_an_older_schema(database, ledger):
+    first = People(database)
+    person = first.accounts.sign_up(ADDRESS, PASSWORD)
+    first.keepsakes.set_keeping(person.id, on=True)
+    first.close()
+    today = now().date()
+    with ledger.change(person.id, "visits", person.id) as connection:
+        for exhibit in ("robe", "belt", "gown"):
+            connection.execute(tables.look.insert().values(user=person.id, exhibit=exhibit, day=today))
+        space = "" if ledger_is_sqlite(ledger) else "people."
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0006'"))
+    again = People(database)
+    assert [entry.act for entry in again.journal.entries()] == ["sign up"]
+    assert {one.exhibit for one in again.keepsakes.looks(person.id)} == {"robe", "belt", "gown"}
+    if ledger_is_sqlite(ledger):
+        assert [exhibit for exhibit, _ in as_they_lie(ledger)] == ["belt", "gown", "robe"]
+    again.close()
+
+
 def test_answers_and_people_in_one_postgres_database_do_not_meet(postgres):
     from survey.store import Store
 
@@ -582,6 +826,25 @@ def test_the_command_names_the_first_administrator(tmp_path):
     assert "0 sessions ended" in admin(tmp_path, "revoke", ADDRESS).stdout
     with refused("code"):
         people.accounts.holder(code)  # a code that is about would let him in again
+    people.close()
+
+
+@pytest.mark.slow
+def test_the_command_deletes_an_account_once_that_is_confirmed(tmp_path):
+    people = People(tmp_path)
+    staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    person = people.accounts.sign_up(ADDRESS, PASSWORD)
+    people.accounts.close("console", person.id, closed=True)
+    asked = admin(tmp_path, "delete", ADDRESS)
+    assert asked.returncode == 1
+    assert "give --yes" in asked.stderr
+    assert people.accounts.of(person.id).address == ADDRESS
+    done = admin(tmp_path, "delete", ADDRESS, "--yes")
+    assert done.returncode == 0, done.stderr
+    assert "deleted" in done.stdout
+    with refused("no-account"):
+        people.accounts.of(person.id)
+    assert people.journal.entries()[0].subject == f"{person.id} deleted"
     people.close()
 
 

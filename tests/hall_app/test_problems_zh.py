@@ -144,6 +144,28 @@ def test_no_text_hides_another():
         assert in_language(text, "en") == text
 
 
+@pytest.mark.parametrize(
+    "why",
+    [
+        "x.zip: exists already – give another name, a backup never overwrites one",
+        "x.zip: no whole backup (people.sqlite is not what was written) – take another copy of it",
+        "x.zip: no whole backup (File is not a zip file) – take another copy of it",
+        "a/b: a link to a folder – put the folder itself in its place",
+        "a/b: no plain file, or a link to none – take it out of the content",
+        "x.zip: the backup failed (No space left on device) – see that the place is there and free",
+        "hall serve did not say where the house's databases are",
+        "a/b: no accounts there – give --data (or --accounts) as `hall serve` has it",
+        "a/b: an office has worked there already – give --data another folder",
+        "Permission denied",
+    ],
+)
+def test_why_a_backup_failed_is_told_in_chinese(why):
+    told = PeopleError("backup-failed", why=why).text("zh")
+    names = r"people\.sqlite|x\.zip|ZIP|hall (serve|backup)|--\w+"
+    assert not re.search("[A-Za-z]{3,}", re.sub(names, "", told)), told
+    assert PeopleError("backup-failed", why=why).text("en").endswith(why)
+
+
 def schema_kinds(part: object) -> Iterator[str]:
     if isinstance(part, dict):
         if isinstance(part.get("type"), str):

@@ -84,6 +84,34 @@ def test_places_are_booked_waited_for_and_given_back(counter, planned):
     assert "booked · 1 person" in second.get("/me?lang=en").text
 
 
+def test_a_form_that_comes_again_after_its_booking_was_cancelled_books_nothing(counter, planned):
+    key, (visitor, address) = planned(), member(counter)
+    form = visitor.get(f"/activities/{key}?lang=en").form("form-book")
+    assert "done=booked" in visitor.post(f"/activities/{key}/book", form).headers["Location"]
+    visitor.send(f"/activities/{key}?lang=en", f"/activities/{key}/cancel")
+    again = visitor.post(f"/activities/{key}/book", form)
+    assert again.status == 400
+    assert "That reservation was cancelled" in again.text
+    person = counter.people.accounts.find(address=address).id
+    assert counter.people.bookings.of(person) == ()
+    assert "It is booked" in visitor.send(again, "form-book").text, "the form that is shown then is a new one"
+
+
+def test_who_was_checked_in_stays_so(counter, planned):
+    key, (visitor, address) = planned(), member(counter)
+    page = visitor.send(f"/activities/{key}?lang=en", "form-book")
+    person = counter.people.accounts.find(address=address).id
+    (booked,) = counter.people.bookings.of(person)
+    counter.people.bookings.arrive("console", booked.id, here=True)
+    told = visitor.send(page, f"/activities/{key}/cancel")
+    assert told.status == 400
+    assert "You have been checked in" in told.text
+    assert f"/activities/{key}/cancel" not in told.text
+    assert [one.arrived is None for one in counter.people.bookings.of(person)] == [False]
+    counter.people.bookings.cancel("console", "reservations", booked.id)  # the desk may
+    assert counter.people.bookings.of(person) == ()
+
+
 def test_what_has_begun_or_is_off_offers_nothing_to_book(counter, planned):
     begun, off = planned(begins=datetime.now(UTC) - timedelta(minutes=1)), planned()
     counter.people.occasions.call_off("console", off)

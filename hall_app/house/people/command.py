@@ -31,6 +31,7 @@ somebody lost a password, or a visitor stands at the desk:
 somebody left, or a device was lost:
   hall admin revoke anna@example.org              end all sessions
   hall admin revoke anna@example.org --roles      and take all roles
+  hall admin delete anna@example.org              asks once more, and leaves nothing of the account but its backups
 
 There is no default password. A password never stands on the command line, where others could read it: it is asked for,
 or made (--generate) and shown once. --data and --accounts must be those of `hall serve`.
@@ -75,6 +76,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     revoke.add_argument(
         "--second-factor", action="store_true", help="and forget its authenticator, where the phone is lost"
     )
+    gone = _action(
+        actions, "delete", "delete an account with all that is kept of it, as its owner would at /me"
+    )
+    gone.add_argument("--yes", action="store_true", help="do not ask for the address again")
     parser.set_defaults(run=run)
 
 
@@ -207,6 +212,22 @@ def _line(people: People, person: Person) -> str:
     return f"{person.address}{name}: {'; '.join(fact for fact in facts if fact)}"
 
 
+def _delete(people: People, arguments: argparse.Namespace) -> int:
+    from hall_app.house.people.database import CONSOLE
+    from hall_app.house.people.records import checked_address
+
+    person = people.accounts.find(address=arguments.address)
+    if not arguments.yes:
+        if not sys.stdin.isatty():
+            raise ValueError("no terminal to confirm this at – give --yes to delete the account unasked")
+        told = input(f"This cannot be undone. Type {person.address} again to delete the account: ")
+        if checked_address(told) != person.address:
+            raise ValueError("another address was typed – nothing was deleted, start again")
+    people.accounts.remove(CONSOLE, person.id)
+    print(f"{person.address}: deleted, with all that was kept of it. Backups made before still have it.")
+    return 0
+
+
 def _revoke(people: People, arguments: argparse.Namespace) -> int:
     from hall_app.house.people.database import CONSOLE
 
@@ -222,4 +243,11 @@ def _revoke(people: People, arguments: argparse.Namespace) -> int:
     return 0
 
 
-_DONE = {"create": _create, "link": _link, "code": _code, "list": _list, "revoke": _revoke}
+_DONE = {
+    "create": _create,
+    "link": _link,
+    "code": _code,
+    "list": _list,
+    "revoke": _revoke,
+    "delete": _delete,
+}

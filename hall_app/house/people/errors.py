@@ -50,9 +50,21 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "验证码不对，请核对手机时间，输入最新的六位数字。",
         "The authenticator's code is wrong: check the phone's clock and give the newest six digits.",
     ),
+    "present-factor": (
+        "现用验证器的验证码不对，请输入它最新显示的六位数字，或一个恢复码。",
+        "The code of the authenticator that is on is wrong: give its newest six digits, or a recovery code.",
+    ),
     "no-account": (
         "没有这个邮箱的账户，请核对地址。",
         "There is no account with this address: check how it is written.",
+    ),
+    "account-closed": (
+        "这个账户已关闭，代码无法使用；请先重新开放账户，或将其删除。",
+        "This account is closed, and no code would open it: open it again first, or delete it.",
+    ),
+    "delete-confirm": (
+        "请照抄邮箱以确认删除账户。",
+        "Type the address of the account to confirm that it is to be deleted.",
     ),
     "no-session": (
         "没有这个登录会话，可能已经结束。",
@@ -116,6 +128,14 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
     "no-booking": (
         "没有这项预约，可能已取消。",
         "There is no such reservation: it may have been cancelled already.",
+    ),
+    "booking-cancelled": (
+        "这次预约已取消；要重新预约，请再提交本页的表单。",
+        "That reservation was cancelled: to book anew, send the form of this page.",
+    ),
+    "arrived": (
+        "您已签到，不能再取消；如有误，请联系前台。",
+        "You have been checked in, and this can no longer be cancelled: tell the desk if it is a mistake.",
     ),
     "occasion-slots": (
         "每段至少 5 分钟，一次最多 {most} 段。",
@@ -266,6 +286,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
     "restore-confirm": (
         "请照抄备份的名称以确认恢复。",
         "Type the name of the backup to confirm that it is to be restored.",
+    ),
+    "remove-confirm": (
+        "请照抄名称以确认删除。",
+        "Type the name of the house to confirm that it is to be removed.",
     ),
     "no-questionnaire": (
         "没有这份问卷，请从列表中选择。",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from hall_app.house.people.database import PEOPLE_FILE, Ledger
@@ -46,12 +48,24 @@ class People:
         self.take_copy = self._ledger.take_copy
 
     def note(self, who: str, act: str, subject: str) -> None:
-        """Write down what is about to be done elsewhere, in the survey's own store."""
-        with self._ledger.change(who, act, subject):
+        """Write down what was done elsewhere and took long, or is handed out now."""
+        with self.noting(who, act, subject):
             pass
 
-    def copy_of(self, person: Person) -> bytes:
-        """All that is kept of a person, as a ZIP; that it was taken is written down."""
+    @contextmanager
+    def noting(self, who: str, act: str, subject: str) -> Iterator[None]:
+        """Write down what the block does elsewhere: in files, in the survey's store. What fails in it leaves no row.
+
+        Nothing else of people is changed meanwhile: it is for what is done at once.
+        """
+        with self._ledger.change(who, act, subject):
+            yield
+
+    def copy_of(self, person: Person, drafts: Sequence[Mapping[str, str]] = ()) -> bytes:
+        """All that is kept of a person, as a ZIP; that it was taken is written down.
+
+        drafts: of exhibits that name him, which lie in the data folder and not here.
+        """
         with self._ledger.change(person.id, "take copy", person.id):
             pass
         kept, booked = self.keepsakes, self.bookings.of(person.id)
@@ -64,7 +78,10 @@ class People:
                 "bookings": booked,
                 "occasions": [self.occasions.of(one.occasion) for one in booked],
                 "answers": self.answer_codes.of(person.id),
-                "journal": self.journal.about(person.id),
+                "followups": [one for one in self.followups.all().values() if one.by == person.id],
+                "revisions": self.revisions.by(person.id),
+                "drafts": drafts,
+                "journal": self.journal.about(person.id, booked),
             },
         )
 

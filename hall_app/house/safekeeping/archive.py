@@ -14,12 +14,14 @@ from typing import BinaryIO, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from hall_app.house.safekeeping.work import lock
 from survey.store.database import now
 
 __all__ = [
     "ANSWERS",
     "CONTENT",
     "DESK",
+    "PART",
     "PEOPLE",
     "ArchiveError",
     "Manifest",
@@ -30,6 +32,7 @@ __all__ = [
 
 CONTENT, PEOPLE, ANSWERS = "content", "people.sqlite", "survey.sqlite"  # what is in it, below its root
 DESK = ("drafts", "shelf")  # and of the office's, since format 2
+PART = ".part"  # ends the name of a file that is being written
 _MANIFEST = "backup.json"
 _LARGEST_MANIFEST = 64 << 20  # [bytes]
 _AT_ONCE = 1 << 20  # [bytes]
@@ -40,6 +43,7 @@ _BROKEN = (
     EOFError,
     NotImplementedError,
     RuntimeError,
+    UnicodeDecodeError,
     ValidationError,
     KeyError,
 )
@@ -74,10 +78,11 @@ def write_archive(path: Path, members: Iterable[tuple[str, Path]], *, people: in
 
     It is its owner's alone. Raises ArchiveError.
     """
-    part = path.with_name(path.name + ".part")
+    part = path.with_name(path.name + PART)
     try:
         part.unlink(missing_ok=True)
         with os.fdopen(os.open(part, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600), "w+b") as file:
+            lock(file.fileno())
             with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
                 files = {name: _put(archive, name, source) for name, source in members}
                 told = {

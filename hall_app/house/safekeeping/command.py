@@ -25,8 +25,8 @@ _RESTORE = """\
 Make a house of a file that `hall backup` wrote: content folder, accounts, answers, the office's drafts and history.
 Nothing is overwritten: the content folder is new or empty, both databases are empty, nobody drafts in --data. The whole
 file is checked before anything is put anywhere.
-Nobody is signed in afterwards, and one-time codes are good no more. What people deleted or withdrew after the backup
-was made is there again: delete it once more."""
+Nobody is signed in afterwards; one-time codes and tokens of programs are good no more: make new ones. What people
+deleted or withdrew after the backup was made is there again: delete it once more."""
 
 _EPILOG = """\
 examples:

@@ -15,16 +15,20 @@ from hall_app.house.safekeeping.archive import (
     ANSWERS,
     CONTENT,
     DESK,
+    PART,
     PEOPLE,
     ArchiveError,
     Manifest,
     extract,
     write_archive,
 )
+from hall_app.house.safekeeping.work import at_work, is_left_over
 from survey import Store
 from survey.store import existing_store
 
-__all__ = ["Holdings", "back_up", "restore"]
+__all__ = ["Holdings", "back_up", "restore", "tidy"]
+
+_WORK = ".backup-"
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,10 @@ def back_up(file: Path, house: Holdings) -> Manifest:
     Raises ArchiveError, SurveyError.
     """
     _see_that_it_is_new(file)
-    with tempfile.TemporaryDirectory(dir=file.parent, prefix=".backup-") as work:  # its owner's alone
+    with (
+        tempfile.TemporaryDirectory(dir=file.parent, prefix=_WORK) as work,
+        at_work(Path(work)),
+    ):  # its owner's alone
         people_copy, answers_copy = Path(work) / PEOPLE, Path(work) / ANSWERS
         with closing(existing_people(house.accounts)) as people:
             accounts = people.copy_to(people_copy)
@@ -57,6 +64,13 @@ def back_up(file: Path, house: Holdings) -> Manifest:
             *_content(house.content),
         ]
         return write_archive(file, members, people=accounts, answers=answers)
+
+
+def tidy(folder: Path) -> None:
+    """Remove what backups left in that folder that were killed: copies of the databases, files begun. None at work."""
+    for path in (*folder.glob(f"{_WORK}*"), *folder.glob(f"*.zip{PART}")):
+        if is_left_over(path):
+            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
 
 
 def restore(file: Path, house: Holdings) -> Manifest:

@@ -1,6 +1,7 @@
 """What a person proves himself with: passwords, an authenticator's codes, secrets that the house made."""
 
 from hall_app.house.people.credentials.codes import (
+    browser_mark,
     digest,
     new_code,
     new_id,
@@ -19,6 +20,7 @@ from hall_app.house.people.credentials.second_factor import (
 __all__ = [
     "AUTHENTICATOR",
     "authenticator_address",
+    "browser_mark",
     "checked_password",
     "code_step",
     "digest",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import hmac
 import re
 import secrets
 
-__all__ = ["digest", "new_code", "new_id", "new_password", "new_token", "typed_code"]
+__all__ = ["browser_mark", "digest", "new_code", "new_id", "new_password", "new_token", "typed_code"]
 
 _LETTERS = "23456789ABCDEFGHJKMNPQRSTVWXYZ"  # none that is taken for another when read from paper
 _GROUPS, _GROUP = 3, 4
@@ -41,3 +42,12 @@ def typed_code(text: str) -> str:
 def digest(secret: str) -> str:
     """What is kept of it. The secret is random, so a slow hash would add nothing."""
     return hashlib.sha256(secret.encode("utf-8", "replace")).hexdigest()
+
+
+def browser_mark(nonce: str, person: str, kept: str) -> str:
+    """By what an account knows a browser again: it says nothing of the account, and is void with its password.
+
+    kept: hash of the password, whose salt nobody outside has.
+    """
+    told = hmac.new(kept.encode(), f"browser {nonce} {person}".encode(), hashlib.sha256)
+    return f"{nonce}.{told.hexdigest()[:40]}"

@@ -1,7 +1,7 @@
 """The one way to change anything about people: what is done is written down in the same transaction, or not done.
 
-There is no other. A connection that reads refuses to write, and the one that writes is lent by `change` alone, which
-adds the journal's row and commits both.
+A connection that reads refuses to write, and the one that writes is lent by `change`, which adds the journal's row and
+commits both. There is one thing that no journal may tell, what a visitor looked at: `keep` writes that alone.
 """
 
 from __future__ import annotations
@@ -72,11 +72,26 @@ class Ledger:
         if act not in ACTS and act not in OWN_ACTS:
             raise ValueError(f"{act!r}: no such act – declare it in hall_app/house/people/acts.py")
         row = {"who": who, "act": act, "subject": subject[:200], "refused": int(refused)}
+        with self._written() as connection:
+            yield connection
+            connection.execute(tables.audit.insert().values(at=now(), **row))
+
+    @contextmanager
+    def keep(self) -> Iterator[Connection]:
+        """A connection for visits of who asked that they be kept: committed when the block ends, and in no journal.
+
+        A row there has its time to the second and stays: it would tell when somebody looked at what, also once he has
+        turned his visits off. Raises StoreError.
+        """
+        with self._written() as connection:
+            yield connection
+
+    @contextmanager
+    def _written(self) -> Iterator[Connection]:
         # Waiting here is fair and cheap; waiting for SQLite's own lock is a busy loop.
         with self._writing, explained(self._name), self._engine.connect() as connection:
             survey_tables.begin_writing(connection)
             yield connection
-            connection.execute(tables.audit.insert().values(at=now(), **row))
             connection.commit()
 
     def refuse(self, who: str, act: str, subject: str) -> None:

@@ -34,6 +34,7 @@ __all__ = [
     "revision",
     "role",
     "session",
+    "spent_form",
     "user",
 ]
 
@@ -98,7 +99,8 @@ favourite = Table(
     Column("made", DateTime(timezone=True), nullable=False),
 )
 
-# That an exhibit was looked at closely, by the day and no finer; only of who asked for it.
+# That an exhibit was looked at closely, by the day and no finer; only of who asked for it. No row of the journal tells
+# of it, and the order of rows is none of looking: `Keepsakes.note_look` writes a day's rows anew, by exhibit.
 look = Table(
     "look",
     metadata,
@@ -154,6 +156,15 @@ booking = Table(
     Column("made", DateTime(timezone=True), nullable=False),
     Column("arrived", DateTime(timezone=True)),
     UniqueConstraint("occasion", "user", name="booking_once"),
+)
+
+# Keys of forms whose booking was cancelled: sent again, such a form books nothing.
+spent_form = Table(
+    "spent_form",
+    metadata,
+    Column("user", ForeignKey("user.id"), primary_key=True),
+    Column("occasion", ForeignKey("occasion.id"), primary_key=True),
+    Column("key", String(64), primary_key=True),
 )
 
 # What became of a suggestion of the questionnaires. `id` is its answer's pseudonym and the module: never the withdrawal

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 
-from sqlalchemy import Connection, delete, select, update
+from sqlalchemy import Connection, Row, delete, select, update
 from sqlalchemy.exc import IntegrityError
 
 from hall_app.house.people.credentials import (
@@ -27,9 +29,11 @@ from hall_app.house.people.records.person import (
     checked_name,
     everybody,
     found_by,
+    how_many,
+    is_as_it_was,
     see_that_one_is_left,
 )
-from hall_app.house.people.records.sessions import end_all
+from hall_app.house.people.records.sessions import end_all, use_second_factor
 from survey.store.database import now
 
 __all__ = ["CODE_DAYS", "RECOVERY_CODES", "Accounts"]
@@ -65,6 +69,11 @@ class Accounts:
         with self._ledger.read() as connection:
             return everybody(connection, wanted, most)
 
+    def count(self, wanted: str = "") -> int:
+        """How many people's address or name holds `wanted`."""
+        with self._ledger.read() as connection:
+            return how_many(connection, wanted)
+
     def sign_up(self, address: str, password: str, *, name: str = "", language: str = "zh") -> Person:
         """A visitor's account, not verified yet. Raises PeopleError."""
         told = checked_address(address)
@@ -98,18 +107,24 @@ class Accounts:
 
     def set_password(self, person: Person, old: str, new: str, *, keep: int | None = None) -> None:
         """Change one's own password; all sessions but `keep` end, codes and links are void. Raises PeopleError."""
-        self._prove(person.id, "password", old)
+        proved = self._prove(person.id, "password", old)
         hashed = password_hash(checked_password(new, person.address))
-        with self._ledger.change(person.id, "password", person.id) as connection:
+        with self._own_change(proved, "password") as connection:
             _set(connection, person.id, password=hashed)
             end_all(connection, person.id, but=keep)
 
     def code_for(self, who: str, person: str, *, long: bool = False) -> str:
-        """A one-time code that opens the account, or one for a link (`long`); earlier ones are good no more."""
+        """A one-time code that opens the account, or one for a link (`long`); earlier ones are good no more.
+
+        Raises PeopleError, also for a closed account, which no code opens.
+        """
         secret, table = new_token() if long else new_code(), tables.code
         kept = digest(secret if long else typed_code(secret))
         row = {"digest": kept, "user": person, "purpose": "open"}
         with self._ledger.change(who, "people", f"{person} code") as connection:
+            found = found_by(connection, id=person)
+            if found is None or found.closed is not None:
+                raise PeopleError("no-account" if found is None else "account-closed")
             connection.execute(delete(table).where(table.c.user == person, table.c.purpose == "open"))
             connection.execute(table.insert().values(expires=now() + timedelta(days=CODE_DAYS), **row))
         return secret
@@ -124,9 +139,12 @@ class Accounts:
         return person
 
     def use_code(self, secret: str, password: str) -> Person:
-        """Verify the account and set its password; all its sessions end. Raises PeopleError, and the code is kept."""
+        """Verify the account and set its password; all its sessions end, and of one that was not verified before the
+        second factor goes. Raises PeopleError, and the code is kept."""
         person = self.holder(secret)
         hashed = password_hash(checked_password(password, person.address))
+        # Whoever made an account of an address that he never proved to be his may have left an authenticator as well.
+        factor = {} if person.verified else {"authenticator": None, "step": None}
         with self._ledger.change(person.id, "use code", person.id) as connection:
             row = _open_code(connection, secret)
             if (
@@ -134,18 +152,27 @@ class Accounts:
                 or not connection.execute(delete(tables.code).where(tables.code.c.id == row.id)).rowcount
             ):
                 raise PeopleError("code")
-            _set(connection, person.id, password=hashed, verified=now())
+            _set(connection, person.id, password=hashed, verified=now(), **factor)
+            if factor:
+                _drop_recovery(connection, person.id)
             end_all(connection, person.id)
-        return person
+            opened = found_by(connection, id=person.id)
+        assert opened is not None
+        return opened
 
-    def begin_second_factor(self, person: Person, password: str, secret: str, code: str) -> tuple[str, ...]:
-        """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError."""
-        self._prove(person.id, "second factor", password)
+    def begin_second_factor(
+        self, person: Person, password: str, secret: str, code: str, present: str = ""
+    ) -> tuple[str, ...]:
+        """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError.
+
+        present: a code of the factor that is on already, which this one takes the place of.
+        """
+        proved = self._prove(person.id, "second factor", password)
         step = code_step(secret, code)
         if step is None:
             raise PeopleError("authenticator")
         codes = tuple(new_code() for _ in range(RECOVERY_CODES))
-        with self._ledger.change(person.id, "second factor", person.id) as connection:
+        with self._own_change(proved, "second factor", present=present) as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=secret, step=step)
             rows = [
@@ -155,10 +182,10 @@ class Accounts:
             connection.execute(tables.code.insert(), rows)
         return codes
 
-    def end_second_factor(self, person: Person, password: str) -> None:
-        """Raises PeopleError."""
-        self._prove(person.id, "second factor", password)
-        with self._ledger.change(person.id, "second factor", f"{person.id} off") as connection:
+    def end_second_factor(self, person: Person, password: str, present: str = "") -> None:
+        """Turn it off. present: one of its codes. Raises PeopleError."""
+        proved = self._prove(person.id, "second factor", password)
+        with self._own_change(proved, "second factor", " off", present=present) as connection:
             _drop_recovery(connection, person.id)
             _set(connection, person.id, authenticator=None, step=None)
 
@@ -178,32 +205,69 @@ class Accounts:
 
     def delete(self, person: Person, password: str) -> None:
         """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
-        self._prove(person.id, "delete account", password)
-        with self._ledger.change(person.id, "delete account", person.id) as connection:
-            release(connection, person.id)
-            for table in (
-                tables.code,
-                tables.session,
-                tables.role,
-                tables.favourite,
-                tables.look,
-                tables.answer_code,
-            ):
-                connection.execute(delete(table).where(table.c.user == person.id))
-            connection.execute(delete(tables.user).where(tables.user.c.id == person.id))
-            if person.roles:
-                see_that_one_is_left(connection)
+        proved = self._prove(person.id, "delete account", password)
+        with self._own_change(proved, "delete account") as connection:
+            _delete(connection, person.id)
         self._ledger.scrub()
 
-    def _prove(self, person: str, act: str, password: str) -> None:
+    def remove(self, who: str, person: str) -> None:
+        """Delete another's account, as `delete` does: of one that is closed its owner cannot. Raises PeopleError."""
+        with self._ledger.change(who, "people", f"{person} deleted") as connection:
+            _delete(connection, person)
+        self._ledger.scrub()
+
+    def _prove(self, person: str, act: str, password: str) -> Row:
+        """The account's row as it was when the password was found right. Raises PeopleError."""
         table = tables.user
         with self._ledger.read() as connection:
-            kept = connection.execute(
-                select(table.c.password).where(table.c.id == person)
-            ).scalar_one_or_none()
-        if not matches(password, kept):
+            kept = connection.execute(select(table).where(table.c.id == person)).one_or_none()
+        if not matches(password, None if kept is None else kept.password) or kept is None:
             self._ledger.refuse(NOBODY, act, person)
             raise PeopleError("password-wrong")
+        return kept
+
+    @contextmanager
+    def _own_change(
+        self, proved: Row, act: str, more: str = "", *, present: str | None = None
+    ) -> Iterator[Connection]:
+        """A change of one's own account, which is still the one that was proved. Raises PeopleError.
+
+        present: a code of the second factor, where one is on; None: it is not asked for.
+        """
+        secret, code = None if present is None else proved.authenticator, present or ""
+        step = code_step(secret, code) if secret else None
+        try:
+            with self._ledger.change(proved.id, act, f"{proved.id}{more}") as connection:
+                if not is_as_it_was(connection, proved):
+                    raise PeopleError("password-wrong")
+                if secret and not use_second_factor(connection, proved.id, step, code):
+                    raise PeopleError("present-factor")
+                yield connection
+        except PeopleError as error:
+            if error.key in ("password-wrong", "present-factor"):
+                self._ledger.refuse(NOBODY, act, proved.id)
+            raise
+
+
+def _delete(connection: Connection, person: str) -> None:
+    """Raises PeopleError where the account is gone, or no administrator would be left."""
+    found = found_by(connection, id=person)
+    if found is None:
+        raise PeopleError("no-account")
+    release(connection, person)
+    for table in (
+        tables.code,
+        tables.session,
+        tables.role,
+        tables.favourite,
+        tables.look,
+        tables.answer_code,
+        tables.spent_form,
+    ):
+        connection.execute(delete(table).where(table.c.user == person))
+    connection.execute(delete(tables.user).where(tables.user.c.id == person))
+    if found.roles:
+        see_that_one_is_left(connection)
 
 
 def _set(connection: Connection, person: str, **values: object) -> None:

@@ -83,15 +83,16 @@ class Bookings:
     def cancel(self, who: str, act: str, booking: int, *, person: str = "", place: Place = ANYWHERE) -> None:
         """Give places back, to who waits. act: "cancel booking" of one's own (`person`), "reservations" of another's.
 
-        Raises PeopleError.
+        Raises PeopleError, also for one's own of which one was checked in: that somebody was there stays.
         """
         table = tables.booking
         with self._ledger.change(who, act, f"booking {booking}") as connection:
             query = select(table.c.occasion).where(*_named(booking, place))
             query = query.where(table.c.user == person) if person else query
             occasion = connection.execute(query).scalar_one_or_none()
-            if occasion is None or not _give_back(connection, occasion, booking):
-                raise PeopleError("no-booking")
+            if occasion is None or not _give_back(connection, occasion, booking, arrived=not person):
+                there = connection.execute(query).one_or_none() is not None
+                raise PeopleError("arrived" if there else "no-booking")
 
     def arrive(self, who: str, booking: int, *, here: bool, place: Place = ANYWHERE) -> None:
         """Check somebody in who has places, or take that back. Raises PeopleError."""
@@ -181,14 +182,16 @@ def _take(connection: Connection, occasion: str, size: int) -> None:
     connection.execute(update(table).where(table.c.id == occasion).values(taken=table.c.taken + size))
 
 
-def _give_back(connection: Connection, occasion: str, booking: int) -> bool:
-    """Whether it was still there."""
+def _give_back(connection: Connection, occasion: str, booking: int, *, arrived: bool = True) -> bool:
+    """Whether it was still there. arrived: also of who was checked in."""
     table = tables.booking
     _lock(connection, occasion)
-    gone = delete(table).where(table.c.id == booking).returning(table.c.size, table.c.waiting)
-    row = connection.execute(gone).one_or_none()
+    gone = delete(table).where(table.c.id == booking, *(() if arrived else (table.c.arrived.is_(None),)))
+    row = connection.execute(gone.returning(table)).one_or_none()
     if row is None:
         return False
+    spent = {"user": row.user, "occasion": occasion, "key": row.key}
+    connection.execute(tables.spent_form.insert().values(**spent))
     if not row.waiting:
         _take(connection, occasion, -row.size)
     promote(connection, occasion)
@@ -196,9 +199,14 @@ def _give_back(connection: Connection, occasion: str, booking: int) -> bool:
 
 
 def _see_that_it_is_new(connection: Connection, person: str, occasion: str, key: str) -> None:
-    """Raises _KnownError for a form that was sent before, PeopleError for another by the same person."""
+    """Raises _KnownError for a form that was sent before, PeopleError for another by the same person, and for one whose
+    booking was cancelled."""
     table = tables.booking
     mine = (table.c.user == person, table.c.occasion == occasion)
     known = connection.execute(select(table.c.key).where(*mine)).scalar_one_or_none()
     if known is not None:
         raise _KnownError if known == key else PeopleError("booked-already")
+    spent = tables.spent_form.c
+    mine = (spent.user == person, spent.occasion == occasion, spent.key == key)
+    if connection.execute(select(spent.key).where(*mine)).one_or_none() is not None:
+        raise PeopleError("booking-cancelled")

@@ -15,11 +15,11 @@ from hall_app.house.people.records.person import Person
 __all__ = ["own_copy"]
 
 _ABOUT = """\
-本压缩包包含本馆保存的关于您的全部资料（JSON，UTF-8）。密码与登录令牌只以散列值保存，未包含在内。
+本压缩包包含本馆保存的关于您的全部资料（JSON，UTF-8）。密码与登录令牌只以散列值保存，未包含在内；验证器密钥亦未包含。
 {zh}。
 
 This archive holds all that the house keeps about you (JSON, UTF-8). Passwords and session tokens are kept as hashes
-only and left out. {en}.
+only and left out, and so is the secret of your authenticator. {en}.
 """
 _TOLD = {  # file: zh, en
     "account": ("账户", "the account"),
@@ -29,14 +29,20 @@ _TOLD = {  # file: zh, en
     "bookings": ("预约", "reservations"),
     "occasions": ("所预约的场次", "what they are for, and when"),
     "answers": ("答卷撤回码", "withdrawal codes of answers that you asked to keep"),
+    "followups": ("您处理的意见", "suggestions that you followed up, as staff"),
+    "revisions": ("您发布或撤销的改动", "changes that you published or took back, as staff"),
+    "drafts": ("您最后改动的草稿", "drafts that you changed last, as staff"),
     "journal": ("操作记录", "what was done"),
 }
 
 
 def own_copy(person: Person, kept: Mapping[str, Sequence[Any]]) -> bytes:
-    """The archive. kept: for each file of records, dataclasses whose fields are told as they are."""
+    """The archive. kept: for each file of records, dataclasses or mappings whose fields are told as they are."""
     files: dict[str, Any] = {"account": asdict(person)}
-    files |= {name: [asdict(row) for row in rows] for name, rows in kept.items()}
+    files |= {
+        name: [dict(row) if isinstance(row, Mapping) else asdict(row) for row in rows]
+        for name, rows in kept.items()
+    }
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("README.txt", _about(files))

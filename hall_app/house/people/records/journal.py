@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 
 from hall_app.house.people.database import Ledger, tables
+from hall_app.house.people.records.bookings import Booking
 from survey.store.database import in_utc
 
 __all__ = ["Entry", "Journal"]
@@ -41,10 +43,17 @@ class Journal:
             rows = connection.execute(query).all()
         return tuple(_entry(row) for row in rows)
 
-    def about(self, person: str) -> tuple[Entry, ...]:
-        """All that one person did or that was done to him, the earliest first."""
+    def about(self, person: str, bookings: Iterable[Booking] = ()) -> tuple[Entry, ...]:
+        """All that one person did or that was done to him and to these bookings of his, the earliest first."""
         table = tables.audit
         mine = (table.c.who == person) | table.c.subject.startswith(person, autoescape=True)
+        for one in bookings:
+            named = (table.c.subject == f"booking {one.id}") | table.c.subject.startswith(
+                f"booking {one.id} "
+            )
+            # SQLite gives the number of a cancelled booking again: what was before he booked is another's.
+            made = (table.c.who == person, table.c.act == "book", table.c.subject == one.occasion)
+            mine |= named & (table.c.id > select(func.max(table.c.id)).where(*made).scalar_subquery())
         with self._ledger.read() as connection:
             rows = connection.execute(select(table).where(mine).order_by(table.c.id)).all()
         return tuple(_entry(row) for row in rows)

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from datetime import date, datetime
 
-from sqlalchemy import delete, func, insert, select, update
+from sqlalchemy import delete, insert, select, update
 from sqlalchemy.exc import IntegrityError
 
 from hall_app.house.people.database import Ledger, tables
@@ -79,24 +79,34 @@ class Keepsakes:
             return tuple(Look(row.exhibit, row.day) for row in connection.execute(query))
 
     def note_look(self, person: str, exhibit: str) -> None:
-        """An exhibit was looked at; written down once a day, and only for who asked for it."""
+        """An exhibit was looked at; kept once a day, only for who asked for it, and in no journal (`Ledger.keep`).
+
+        The day's rows of a person are written anew each time, in the order of exhibits: neither their place in the
+        file nor the transaction that PostgreSQL notes of each row tells which was looked at first, or when.
+        """
         table, user, today = tables.look, tables.user, now().date()
-        mine = (table.c.user == person, table.c.exhibit == exhibit, table.c.day == today)
+        mine = (table.c.user == person, table.c.day == today)
         asked = select(user.c.id).where(user.c.id == person, user.c.keeps_looks == 1)
+        day = select(table.c.exhibit).where(*mine)
         with self._ledger.read() as connection:
-            known = connection.execute(select(func.count()).select_from(table).where(*mine)).scalar_one()
-            if known or connection.execute(asked).one_or_none() is None:
+            if connection.execute(asked).one_or_none() is None:
                 return
-        try:
-            with self._ledger.change(person, "visits", person) as connection:
-                connection.execute(insert(table).values(user=person, exhibit=exhibit, day=today))
-        except IntegrityError:
-            return  # another window was first
+            if exhibit in connection.execute(day).scalars():
+                return
+        with self._ledger.keep() as connection:
+            # Asked again: it may have been turned off since. The row is nobody else's until the commit.
+            if connection.execute(asked.with_for_update()).one_or_none() is None:
+                return
+            kept = sorted({exhibit, *connection.execute(day).scalars()})
+            connection.execute(delete(table).where(*mine))
+            connection.execute(
+                insert(table), [{"user": person, "exhibit": one, "day": today} for one in kept]
+            )
 
     def set_keeping(self, person: str, *, on: bool) -> None:
         """Whether visits are kept; who no longer wants it has none left. Raises PeopleError."""
         user, table = tables.user, tables.look
-        with self._ledger.change(person, "visits", person) as connection:
+        with self._ledger.change(person, "visits", f"{person} {'on' if on else 'off'}") as connection:
             row = update(user).where(user.c.id == person).values(keeps_looks=int(on))
             if not connection.execute(row).rowcount:
                 raise PeopleError("no-account")

@@ -7,14 +7,23 @@ import unicodedata
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import ColumnElement, Connection, Row, func, select, true
 
 from hall_app.house.people.acts import Role, may
 from hall_app.house.people.database import tables
 from hall_app.house.people.errors import PeopleError
 from survey.store.database import in_utc
 
-__all__ = ["Person", "checked_address", "checked_name", "everybody", "found_by", "see_that_one_is_left"]
+__all__ = [
+    "Person",
+    "checked_address",
+    "checked_name",
+    "everybody",
+    "found_by",
+    "how_many",
+    "is_as_it_was",
+    "see_that_one_is_left",
+]
 
 _ADDRESS = re.compile(r"[^@\s]{1,64}@[^@\s.]+(\.[^@\s.]+)+")
 _LONGEST = 254  # of an address: RFC 5321
@@ -67,17 +76,23 @@ def found_by(connection: Connection, **key: str) -> Person | None:
     return _person(row, frozenset(Role(role) for role in roles))
 
 
+def is_as_it_was(connection: Connection, checked: Row) -> bool:
+    """Whether password, second factor and closing are still those of `checked`, the account's row as it was read.
+
+    A password takes long to look at, and may be changed meanwhile. The row is nobody else's until the commit.
+    """
+    table = tables.user
+    mine = select(table).where(table.c.id == checked.id).with_for_update()
+    now = connection.execute(mine).one_or_none()
+    seen = (checked.password, checked.authenticator, checked.closed)
+    return now is not None and (now.password, now.authenticator, now.closed) == seen
+
+
 def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, ...]:
     """People whose address or name holds `wanted`, those with roles first, then by address; `most` at most."""
     user, role = tables.user, tables.role
     ranks = select(role.c.user, func.count().label("count")).group_by(role.c.user).subquery()
-    query = select(user).outerjoin(ranks, ranks.c.user == user.c.id)
-    if wanted:
-        part = wanted.casefold()
-        query = query.where(
-            user.c.address.contains(part, autoescape=True)
-            | func.lower(user.c.name).contains(part, autoescape=True)
-        )
+    query = select(user).outerjoin(ranks, ranks.c.user == user.c.id).where(_holds(wanted))
     order = (func.coalesce(ranks.c.count, 0) == 0, user.c.address)
     rows = connection.execute(query.order_by(*order).limit(most)).all()
     given: dict[str, set[Role]] = {}
@@ -85,6 +100,20 @@ def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, .
     for whose, name in connection.execute(select(role.c.user, role.c.role).where(role.c.user.in_(ids))):
         given.setdefault(whose, set()).add(Role(name))
     return tuple(_person(row, frozenset(given.get(row.id, ()))) for row in rows)
+
+
+def how_many(connection: Connection, wanted: str) -> int:
+    """People whose address or name holds `wanted`."""
+    query = select(func.count()).select_from(tables.user).where(_holds(wanted))
+    return connection.execute(query).scalar_one()
+
+
+def _holds(wanted: str) -> ColumnElement[bool]:
+    user, part = tables.user, wanted.casefold()
+    if not part:
+        return true()
+    name = func.lower(user.c.name).contains(part, autoescape=True)
+    return user.c.address.contains(part, autoescape=True) | name
 
 
 def see_that_one_is_left(connection: Connection) -> None:

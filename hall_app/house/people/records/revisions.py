@@ -54,6 +54,13 @@ class Revisions:
         with self._ledger.read() as connection:
             return tuple(_revision(row) for row in connection.execute(query).all())
 
+    def by(self, person: str) -> tuple[Revision, ...]:
+        """All that one person published or took back, the earliest first."""
+        table = tables.revision
+        with self._ledger.read() as connection:
+            rows = connection.execute(select(table).where(table.c.who == person).order_by(table.c.id)).all()
+        return tuple(_revision(row) for row in rows)
+
     def one(self, number: int) -> Revision:
         """Raises PeopleError."""
         with self._ledger.read() as connection:

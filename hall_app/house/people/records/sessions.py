@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from hmac import compare_digest
 
 from sqlalchemy import Connection, delete, select, update
 
 from hall_app.house.people.credentials import (
+    browser_mark,
     code_step,
     digest,
     matches,
+    new_id,
     new_token,
     password_hash,
     stale,
@@ -18,10 +21,10 @@ from hall_app.house.people.credentials import (
 )
 from hall_app.house.people.database import NOBODY, Ledger, tables
 from hall_app.house.people.errors import PeopleError
-from hall_app.house.people.records.person import Person, found_by
+from hall_app.house.people.records.person import Person, found_by, is_as_it_was
 from survey.store.database import in_utc, now
 
-__all__ = ["OFFICE_HOURS", "VISITOR_DAYS", "Session", "Sessions", "end_all"]
+__all__ = ["OFFICE_HOURS", "VISITOR_DAYS", "Session", "Sessions", "end_all", "use_second_factor"]
 
 VISITOR_DAYS = 30
 OFFICE_HOURS = 12  # a working day: a desk that is left in the evening is locked in the morning
@@ -61,17 +64,19 @@ class Sessions:
         if not right or row.closed is not None:
             self._ledger.refuse(NOBODY, "sign in", row.id)
             raise PeopleError("sign-in")
-        again = password_hash(password) if stale(row.password) else row.password
+        again = password_hash(password) if stale(row.password) else None
         try:
             with self._ledger.change(row.id, "sign in", subject) as connection:
-                if row.authenticator and not _second_factor(connection, row.id, step, code):
-                    raise PeopleError("sign-in")
-                person = found_by(connection, id=row.id)
-                if person is None:
+                person = found_by(connection, id=row.id) if is_as_it_was(connection, row) else None
+                if person is None or (
+                    row.authenticator and not use_second_factor(connection, row.id, step, code)
+                ):
                     raise PeopleError("sign-in")
                 if office and not person.roles:
                     raise PeopleError("no-office")
-                connection.execute(update(table).where(table.c.id == row.id).values(password=again))
+                if again is not None:
+                    mine = (table.c.id == row.id, table.c.password == row.password)
+                    connection.execute(update(table).where(*mine).values(password=again))
                 return person, _opened(connection, row.id, office)
         except PeopleError:
             self._ledger.refuse(NOBODY, "sign in", row.id)
@@ -81,6 +86,26 @@ class Sessions:
         """A token for somebody who has just proved himself otherwise: by a code, or by signing up."""
         with self._ledger.change(person.id, "sign in", "office" if office else "visitor") as connection:
             return _opened(connection, person.id, office)
+
+    def mark(self, person: str) -> str:
+        """For a browser to keep that was let in to that account: by it `knows` tells it from strangers. No way in."""
+        table = tables.user
+        with self._ledger.read() as connection:
+            kept = connection.execute(
+                select(table.c.password).where(table.c.id == person)
+            ).scalar_one_or_none()
+        return browser_mark(new_id(), person, kept) if kept else ""
+
+    def knows(self, address: str, mark: str) -> bool:
+        """Whether a browser that keeps this mark was let in to the account of that address, by its password of now."""
+        table, (nonce, _, told) = tables.user, mark.partition(".")
+        if not told:
+            return False
+        with self._ledger.read() as connection:
+            row = connection.execute(select(table).where(table.c.address == address)).one_or_none()
+        if row is None or row.password is None:
+            return False
+        return compare_digest(browser_mark(nonce, row.id, row.password).encode(), mark.encode())
 
     def find(self, token: str, *, office: bool = False) -> tuple[Person, Session] | None:
         """Whose token it is; None for one that is unknown, ended, out of date or of the other kind."""
@@ -131,8 +156,11 @@ def _opened(connection: Connection, person: str, office: bool) -> str:
     return token
 
 
-def _second_factor(connection: Connection, person: str, step: int | None, code: str) -> bool:
-    """Whether the code is good, and now used: two who send the same at once cannot both come in."""
+def use_second_factor(connection: Connection, person: str, step: int | None, code: str) -> bool:
+    """Whether the code is good, and now used: two who send the same at once cannot both come in.
+
+    step: of the authenticator's, None where it is none of its codes: it may be a recovery code.
+    """
     user, kept = tables.user, tables.code
     if step is not None:
         unused = user.c.step.is_(None) | (user.c.step < step)

@@ -37,6 +37,7 @@ class Asking:
     """One request. path: as asked for; names: parts of the path; query, form: first values of what was given.
 
     lang: "zh" or "en"; seal: what a form of this browser has to bring back; network: whom the request counts for;
+    mark: by which the browser is known at an account that let it in, "" for none;
     refusal: what was wrong with the form that is shown again, "" for none; site: scheme and host as the browser has it.
     """
 
@@ -51,6 +52,7 @@ class Asking:
     files: tuple[Brought, ...] = ()
     guest: Guest | None = None
     refusal: str = ""
+    mark: str = ""
 
     @property
     def person(self) -> Person:
@@ -95,10 +97,14 @@ class Shown:
 
 @dataclass(frozen=True)
 class Moved:
-    """303 to another page of the hall. token: of a session that begins with it; None: none begins, "": it ends."""
+    """303 to another page of the hall. token: of a session that begins with it; None: none begins, "": it ends.
+
+    mark: for the browser to keep, by which the account knows it again; "": it keeps what it has.
+    """
 
     to: str
     token: str | None = None
+    mark: str = ""
 
 
 @dataclass(frozen=True)

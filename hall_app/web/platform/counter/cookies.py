@@ -10,9 +10,10 @@ from starlette.responses import Response
 
 from hall_app.house.people.records import OFFICE_HOURS, VISITOR_DAYS
 
-__all__ = ["OFFICE", "VISITOR", "Kind", "give_token", "seal_key", "with_seal_key"]
+__all__ = ["OFFICE", "VISITOR", "Kind", "give_mark", "give_token", "mark_of", "seal_key", "with_seal_key"]
 
 _SEAL = "hall-form"
+_MARK, _MARK_SECONDS = "hall-known", 400 * 86400  # no browser keeps a cookie for longer
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,15 @@ OFFICE = Kind("hall-office", office=True, same_site="strict", seconds=OFFICE_HOU
 def give_token(response: Response, request: Request, kind: Kind, token: str) -> None:
     """Let the browser keep the token of a session; "" lets it forget."""
     _set(response, request, kind.name, token, kind.same_site, kind.seconds if token else 0)
+
+
+def give_mark(response: Response, request: Request, mark: str) -> None:
+    """Let the browser keep by what the account that let it in knows it: nobody's name, and no way in."""
+    _set(response, request, _MARK, mark, "lax", _MARK_SECONDS)
+
+
+def mark_of(request: Request) -> str:
+    return request.cookies.get(_MARK, "")[:100]
 
 
 def seal_key(request: Request) -> str:

@@ -19,7 +19,14 @@ from hall_app.web.limits.doorkeeper import address_of
 from hall_app.web.pages.catalogue import shown_language
 from hall_app.web.pages.frame import Frame
 from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
-from hall_app.web.platform.counter.cookies import Kind, give_token, seal_key, with_seal_key
+from hall_app.web.platform.counter.cookies import (
+    Kind,
+    give_mark,
+    give_token,
+    mark_of,
+    seal_key,
+    with_seal_key,
+)
 from hall_app.web.platform.counter.guard import (
     PLAIN,
     SEAL,
@@ -231,6 +238,7 @@ class Counter:
             form=fields,
             files=form.files,
             guest=guest,
+            mark=mark_of(request),
         )
 
     def _language(self, request: Request, form: str, guest: Guest | None) -> str:
@@ -256,6 +264,8 @@ class Counter:
             response: Response = RedirectResponse(answer.to, 303, headers=_HEADERS)
             if answer.token is not None:
                 give_token(response, request, self.kind, answer.token)
+            if answer.mark:
+                give_mark(response, request, answer.mark)
             return response
         if isinstance(answer, Download):
             how = "inline" if answer.inline else "attachment"

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from hall_app.house.people import Person
 from hall_app.web.platform.counter.asking import Asking
 from hall_app.web.platform.counter.counter import Counter
 from hall_app.web.platform.counter.fields import Field
 
-__all__ = ["address_field", "sign_in_fields", "signed_in"]
+__all__ = ["Entered", "address_field", "sign_in_fields", "signed_in"]
+
+
+@dataclass(frozen=True)
+class Entered:
+    """token: of the session that begins; mark: by which this browser is known at the account from now on."""
+
+    person: Person
+    token: str
+    mark: str
 
 
 def address_field(asking: Asking) -> Field:
@@ -31,15 +42,27 @@ def sign_in_fields(asking: Asking, *, code_hint: str = "") -> tuple[Field, Field
     )
 
 
-def signed_in(counter: Counter, asking: Asking) -> tuple[Person, str]:
-    """Who gave these fields, and the token of the session that begins. Raises PeopleError, also for too many tries."""
+def signed_in(counter: Counter, asking: Asking) -> Entered:
+    """Who gave these fields, and what begins with it. Raises PeopleError, also for too many tries.
+
+    A browser that was let in to this account before is counted by itself, so that no stranger uses up its tries.
+    """
     from hall_app.house.people.records import checked_address
 
-    given = asking.form
+    given, sessions = asking.form, counter.people.sessions
     address = checked_address(given.get("address", ""))
     counter.pace.take("try from here", asking.network)
-    counter.pace.take("account from here", address, asking.network)
-    counter.pace.take("account", address)
-    return counter.people.sessions.sign_in(
-        address, given.get("password", ""), given.get("code", ""), office=counter.kind.office
-    )
+    with counter.pace.failures(*_counts(address, asking, known=sessions.knows(address, asking.mark))):
+        person, token = sessions.sign_in(
+            address, given.get("password", ""), given.get("code", ""), office=counter.kind.office
+        )
+    return Entered(person, token, sessions.mark(person.id))
+
+
+def _counts(address: str, asking: Asking, *, known: bool) -> tuple[tuple[str, ...], ...]:
+    """What a try that fails is counted by."""
+    if known:
+        browser = f"browser {asking.mark}"
+        return ("account from here", address, browser), ("account", address, browser)
+    here = (address, asking.network)
+    return ("account from here", *here), ("account share", *here), ("account", address)

@@ -9,7 +9,7 @@ from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, S
 from hall_app.web.platform.me.answers import AnswerShelf
 from hall_app.web.platform.me.keepsakes import Shelf
 from hall_app.web.platform.me.notices import notice
-from hall_app.web.platform.me.safety import password_form
+from hall_app.web.platform.me.safety import password_form, present_code
 from hall_app.web.platform.programme import reservations
 
 __all__ = ["Centre"]
@@ -142,9 +142,15 @@ def _second_factor(asking: Asking) -> str:
         given={"autocomplete": "current-password"},
     )
     told = word("两步验证已开启。", "The second factor is on.")
-    return f'<p class="quiet">{told}</p>' + form(
-        asking, "factor-off", "/me/second-factor/end", (field,), word("关闭两步验证", "Turn it off")
+    way = f'<a href="{asking.address("/me/second-factor")}">{word("更换验证器", "Replace the authenticator")}</a>'
+    sent = form(
+        asking,
+        "factor-off",
+        "/me/second-factor/end",
+        (present_code(asking, "code"), field),
+        word("关闭两步验证", "Turn it off"),
     )
+    return f'<p class="quiet">{told}</p><p class="doors">{way}</p>{sent}'
 
 
 def _data(asking: Asking) -> str:

@@ -55,9 +55,9 @@ class Entrance:
         )
 
     def sign_in(self, asking: Asking) -> Moved:
-        person, token = signed_in(self._counter, asking)
-        lang = asking.form.get("lang") or person.language
-        return Moved(asking.afterwards or f"/me?lang={lang}", token)
+        came = signed_in(self._counter, asking)
+        lang = asking.form.get("lang") or came.person.language
+        return Moved(asking.afterwards or f"/me?lang={lang}", came.token, came.mark)
 
     def register_page(self, asking: Asking) -> Shown | Moved:
         if asking.guest:
@@ -102,8 +102,8 @@ class Entrance:
         person = self._people.accounts.sign_up(
             given.get("address", ""), password, name=given.get("name", ""), language=asking.lang
         )
-        token = self._people.sessions.open(person)
-        return Moved(asking.afterwards or asking.address("/me", done="registered"), token)
+        sessions, after = self._people.sessions, asking.afterwards or asking.address("/me", done="registered")
+        return Moved(after, sessions.open(person), sessions.mark(person.id))
 
     def open_page(self, asking: Asking) -> Shown:
         word, code = asking.word, asking.form.get("code", asking.query.get("code", ""))
@@ -142,7 +142,8 @@ class Entrance:
         person = self._people.accounts.use_code(asking.form.get("code", ""), given_password(asking))
         if person.second_factor:  # a code stands in for the password, not for the phone
             return Moved(asking.address("/me", done="opened"))
-        return Moved(asking.address("/me", done="opened"), self._people.sessions.open(person))
+        sessions = self._people.sessions
+        return Moved(asking.address("/me", done="opened"), sessions.open(person), sessions.mark(person.id))
 
 
 def new_password(asking: Asking) -> tuple[Field, Field]:

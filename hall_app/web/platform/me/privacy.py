@@ -21,7 +21,7 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "登录会话的起止时间；不记录浏览器，也不记录网络地址。",
                 "您的收藏与预约（人数、团体名称）；参观记录只在您开启后保存，且只记日期。",
                 "问卷的撤回码：只在您要求时由账户保管；它把账户与那份回答连在一起。",
-                "操作记录：何时做了何事，只以随机编号指代人，不含邮箱。",
+                "操作记录：何时做了何事，只以随机编号指代人，不含邮箱，也不含您看过什么。",
             ),
         ),
         (
@@ -35,7 +35,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "you turn that on, and by the day.",
                 "The withdrawal code of answers only where you ask that the account keep it; it links the account to "
                 "those answers.",
-                "A journal of what was done and when, in which a random number stands for you and never your address.",
+                "A journal of what was done and when, in which a random number stands for you and never your address. "
+                "What you looked at is not in it.",
             ),
         ),
     ),
@@ -91,7 +92,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             "Cookie 与浏览器存储",
             (
                 "hall-me（登录后）、hall-office（工作人员登录后）、hall-form（打开表单时，确认表单来自您的浏览器）、"
-                "hall-place（在展厅内，关闭浏览器即失效）。脚本读不到它们，别无其他。",
+                "hall-place（在展厅内，关闭浏览器即失效）、hall-known（登录后留下，至多 400 天：他人猜您的密码时，"
+                "您的浏览器仍可登录；其中没有您的信息，也不能代替密码，密码更改即失效）。脚本读不到它们，别无其他。",
                 "展厅的设置与位置、问卷草稿只留在您的浏览器里；撤回码也是，除非您让账户保管。",
             ),
         ),
@@ -99,8 +101,10 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             "Cookies, and what your browser keeps",
             (
                 "hall-me once you sign in, hall-office for staff, hall-form where there is a form, which ties it "
-                "to your browser, and hall-place in the hall, until the browser is closed. No script reads them, and "
-                "there are no others.",
+                "to your browser, hall-place in the hall, until the browser is closed, and hall-known, which signing "
+                "in leaves for 400 days at most: while others guess at your password this browser still gets in. It "
+                "says nothing of you, is no way in without the password, and is void once that is changed. No script "
+                "reads them, and there are no others.",
                 "Settings of the hall, where you stood and drafts of answers stay in your browser, and so do "
                 "withdrawal codes unless you ask the account to keep one.",
             ),

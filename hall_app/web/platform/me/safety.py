@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from html import escape
 
 from hall_app.house.people.credentials import authenticator_address, new_authenticator
 from hall_app.web.platform.counter import Asking, Counter, Download, Field, Moved, Page, Shown, form
 from hall_app.web.platform.me.entering import given_password, new_password
 
-__all__ = ["Safety", "password_form"]
+__all__ = ["Safety", "password_form", "present_code"]
 
 
 class Safety:
@@ -24,18 +25,17 @@ class Safety:
 
     def set_password(self, asking: Asking) -> Moved:
         assert asking.guest is not None
-        self._count(asking)
-        keep = asking.guest.session.id
+        keep, person = asking.guest.session.id, asking.person
         new = given_password(asking)
-        self._people.accounts.set_password(asking.person, asking.form.get("old", ""), new, keep=keep)
-        return Moved(asking.address("/me#password", done="password"))
+        with self._counted(asking):
+            self._people.accounts.set_password(person, asking.form.get("old", ""), new, keep=keep)
+        mark = self._people.sessions.mark(person.id)  # the former went with the former password
+        return Moved(asking.address("/me#password", done="password"), mark=mark)
 
-    def second_factor_page(self, asking: Asking) -> Shown | Moved:
+    def second_factor_page(self, asking: Asking) -> Shown:
         import segno
 
-        if asking.person.second_factor:
-            return Moved(asking.address("/me#second-factor"))
-        word = asking.word
+        word, on = asking.word, asking.person.second_factor
         secret = asking.form.get("secret", "") or new_authenticator()
         house = getattr(self._house.content.hall.title, asking.lang)
         square = segno.make(authenticator_address(secret, asking.person.address, house), error="m")
@@ -44,38 +44,31 @@ class Safety:
             "供验证器扫描的二维码，与下面的密钥相同", "Square code for the app, the same as the key below"
         )
         spaced = " ".join(secret[at : at + 4] for at in range(0, len(secret), 4))
-        sent = form(
-            asking,
-            "second-factor",
-            "/me/second-factor",
-            (
-                Field(
-                    "code",
-                    word("验证器显示的六位数字", "Six digits that the app shows"),
-                    given={"autocomplete": "one-time-code", "inputmode": "numeric", "maxlength": "10"},
-                ),
-                _current(asking),
-            ),
-            word("开启", "Turn it on"),
-            hidden={"secret": secret},
+        title = (
+            word("更换验证器", "Replace the authenticator")
+            if on
+            else word("开启两步验证", "Set up the second factor")
         )
-        title = word("开启两步验证", "Set up the second factor")
         lead = word(
             "用任何验证器应用扫描此码，或手工输入密钥。",
             "Scan the square with any authenticator app, or type the key in by hand.",
         )
         main = f"""<header><h1>{title}</h1><p class="lead">{lead}</p></header><div class="desk">
 <img class="square" src="{escape(picture)}" alt="{alt}" width="245" height="245">
-<p>{word("密钥", "Key")}: <code>{spaced}</code></p>{sent}
+<p>{word("密钥", "Key")}: <code>{spaced}</code></p>{_factor_form(asking, secret)}
 <p class="doors"><a href="{asking.address("/me")}">{word("返回", "Back")}</a></p></div>"""
         return Shown(Page(title, main, "me"), path="/me/second-factor")
 
     def begin_second_factor(self, asking: Asking) -> Shown:
-        self._count(asking)
-        given, word = asking.form, asking.word
-        codes = self._people.accounts.begin_second_factor(
-            asking.person, given.get("password", ""), _secret(given.get("secret", "")), given.get("code", "")
-        )
+        given, word, secret = asking.form, asking.word, _secret(asking.form.get("secret", ""))
+        with self._counted(asking):
+            codes = self._people.accounts.begin_second_factor(
+                asking.person,
+                given.get("password", ""),
+                secret,
+                given.get("code", ""),
+                given.get("present", ""),
+            )
         title = word("恢复码", "Recovery codes")
         lead = word(
             "两步验证已开启。请抄下或打印这些恢复码：手机不在时，每个可代替验证码一次。它们不会再显示。",
@@ -89,8 +82,11 @@ class Safety:
         return Shown(Page(title, main, "me"), path="/me")
 
     def end_second_factor(self, asking: Asking) -> Moved:
-        self._count(asking)
-        self._people.accounts.end_second_factor(asking.person, asking.form.get("password", ""))
+        given = asking.form
+        with self._counted(asking):
+            self._people.accounts.end_second_factor(
+                asking.person, given.get("password", ""), given.get("code", "")
+            )
         return Moved(asking.address("/me#second-factor", done="factor-off"))
 
     def end_session(self, asking: Asking) -> Moved:
@@ -105,7 +101,12 @@ class Safety:
 
     def copy(self, asking: Asking) -> Download:
         self._pace.take("copy", asking.person.id)
-        return Download(self._people.copy_of(asking.person), "my-data.zip", "application/zip")
+        from hall_app.house.drafts import Drafts, Shelf
+
+        content, data, person = self._house.content.folder, self._house.data, asking.person
+        drafts = Drafts(content, data, Shelf(data / "shelf", self._house.quota)).all().values()
+        mine = [{"exhibit": one.exhibit, "at": one.at} for one in drafts if one.by == person.id]
+        return Download(self._people.copy_of(person, mine), "my-data.zip", "application/zip")
 
     def delete_page(self, asking: Asking) -> Shown:
         word = asking.word
@@ -137,12 +138,42 @@ class Safety:
         return Shown(Page(title, main, "me"), path="/me/delete")
 
     def delete(self, asking: Asking) -> Moved:
-        self._count(asking)
-        self._people.accounts.delete(asking.person, asking.form.get("password", ""))
+        with self._counted(asking):
+            self._people.accounts.delete(asking.person, asking.form.get("password", ""))
         return Moved(asking.address("/me", done="deleted"), "")
 
-    def _count(self, asking: Asking) -> None:
-        self._pace.take("account from here", asking.person.address, asking.network)
+    def _counted(self, asking: Asking) -> AbstractContextManager[None]:
+        """By the session: whoever guesses at the account elsewhere takes nothing from who is signed in."""
+        assert asking.guest is not None
+        session = f"session {asking.guest.session.id}"
+        return self._pace.failures(
+            ("account from here", asking.person.id, session), ("account", asking.person.id, session)
+        )
+
+
+def _factor_form(asking: Asking, secret: str) -> str:
+    word, on = asking.word, asking.person.second_factor
+    shown = Field(
+        "code",
+        word("新验证器显示的六位数字", "Six digits that the new app shows")
+        if on
+        else word("验证器显示的六位数字", "Six digits that the app shows"),
+        given={"autocomplete": "one-time-code", "inputmode": "numeric", "maxlength": "10"},
+    )
+    fields = (shown, *((present_code(asking, "present"),) if on else ()), _current(asking))
+    words = word("更换", "Replace it") if on else word("开启", "Turn it on")
+    return form(asking, "second-factor", "/me/second-factor", fields, words, hidden={"secret": secret})
+
+
+def present_code(asking: Asking, name: str) -> Field:
+    """A code of the second factor that is on."""
+    word = asking.word
+    return Field(
+        name,
+        word("现用验证器的验证码", "Code of the authenticator that is on"),
+        hint=word("六位数字，或一个恢复码", "Six digits, or a recovery code"),
+        given={"autocomplete": "one-time-code", "maxlength": "40"},
+    )
 
 
 def password_form(asking: Asking) -> str:

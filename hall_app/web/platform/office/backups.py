@@ -12,7 +12,7 @@ from shlex import quote
 from typing import Any
 
 from hall_app.house.people import PeopleError
-from hall_app.house.safekeeping import ArchiveError, Holdings, back_up, restore
+from hall_app.house.safekeeping import ArchiveError, Holdings, back_up, restore, tidy
 from hall_app.web.platform.counter import Asking, Counter, Download, Field, Shown, button, form
 from hall_app.web.platform.office.deeds import Deed, Reading
 from hall_app.web.platform.office.table import office_page
@@ -21,6 +21,7 @@ from survey.errors import SurveyError
 __all__ = ["backup_deeds", "backup_readings"]
 
 _NAME = re.compile(r"hall-\d{8}-\d{6}(?:-\d+)?\.zip")
+_HOUSE = re.compile(r"hall-\d{8}-\d{6}(?:-\d+){0,2}")
 _ONE = "backups/{key}"
 
 
@@ -29,12 +30,15 @@ def backup_readings(counter: Counter) -> tuple[Reading, ...]:
     return (
         Reading("backups", "backup", rooms.all, rooms.page),
         Reading(f"{_ONE}/file", "backup", rooms.facts, rooms.file),
+        Reading("restored", "backup", rooms.houses, rooms.page),
     )
 
 
 def backup_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     typed = {"name": "of the backup once more, to confirm"}
+    house = {"name": "of the restored house once more, to confirm"}
+    tidy(counter.house.data / "backups")
     return (
         Deed("backups", "backup", rooms.make, "backups", rooms.page),
         Deed(f"{_ONE}/remove", "backup", rooms.remove, "backups", rooms.page),
@@ -47,6 +51,7 @@ def backup_deeds(counter: Counter) -> tuple[Deed, ...]:
             rooms.restored_page,
             fields=typed,
         ),
+        Deed("restored/{key}/remove", "backup", rooms.remove_house, "backups", rooms.page, fields=house),
     )
 
 
@@ -68,6 +73,27 @@ class _Rooms:
         found = sorted((p for p in self._folder.iterdir() if _NAME.fullmatch(p.name)), reverse=True)
         return [_told(path) for path in found]
 
+    def houses(self, asking: Asking) -> list[dict[str, Any]]:
+        """Whole houses that were made of backups, the newest first."""
+        folder = self._house.data / "restored"
+        if not folder.is_dir():
+            return []
+        return [{"name": path.name} for path in sorted(folder.iterdir(), reverse=True) if _is_house(path)]
+
+    def remove_house(self, asking: Asking) -> dict[str, Any]:
+        home = self._house.data / "restored" / asking.names["key"]
+        if not _is_house(home):
+            raise PeopleError("no-backup")
+        if asking.form.get("name", "").strip() != home.name:
+            raise PeopleError("remove-confirm")
+        with _AT_WORK:
+            try:
+                shutil.rmtree(home)
+            except OSError as error:
+                raise PeopleError("backup-failed", why=error.strerror or str(error)) from None
+            self._people.note(asking.person.id, "backup", f"remove restored {home.name}")
+        return {"name": home.name}
+
     def facts(self, asking: Asking) -> dict[str, Any]:
         return _told(self._path(asking))
 
@@ -87,16 +113,17 @@ class _Rooms:
         holdings = self._holdings()
         with _AT_WORK:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            tidy(self._folder)
             stem = f"hall-{datetime.now(UTC):%Y%m%d-%H%M%S}"
             name, number = f"{stem}.zip", 1
             while (self._folder / name).exists():
                 number += 1
                 name = f"{stem}-{number}.zip"
-            self._people.note(asking.person.id, "backup", f"make {name}")
             try:
                 made = back_up(self._folder / name, holdings)
             except (ArchiveError, SurveyError, OSError) as error:
                 raise PeopleError("backup-failed", why=_plain(error, self._folder)) from None
+            self._people.note(asking.person.id, "backup", f"make {name}")
         return _told(self._folder / name) | {"people": made.people, "answers": made.answers}
 
     def file(self, asking: Asking) -> Download:
@@ -106,8 +133,8 @@ class _Rooms:
 
     def remove(self, asking: Asking) -> dict[str, Any]:
         path = self._path(asking)
-        self._people.note(asking.person.id, "backup", f"remove {path.name}")
-        path.unlink(missing_ok=True)
+        with self._people.noting(asking.person.id, "backup", f"remove {path.name}"):
+            path.unlink(missing_ok=True)
         return {"name": path.name}
 
     def restore(self, asking: Asking) -> dict[str, Any]:
@@ -121,7 +148,6 @@ class _Rooms:
             while home.exists():
                 number += 1
                 home = home.with_name(f"{path.stem}-{number}")
-            self._people.note(asking.person.id, "backup", f"restore {path.name}")
             home.mkdir(mode=0o700, parents=True)
             try:
                 data = home / "data"
@@ -129,6 +155,7 @@ class _Rooms:
             except (ArchiveError, SurveyError, OSError) as error:
                 shutil.rmtree(home, ignore_errors=True)
                 raise PeopleError("backup-failed", why=_plain(error, self._folder)) from None
+            self._people.note(asking.person.id, "backup", f"restore {path.name}")
         return {
             "name": path.name,
             "content": str(home / "content"),
@@ -157,7 +184,40 @@ class _Rooms:
         lines = "".join(self._line(asking, number, one) for number, one in enumerate(self.all(asking)))
         none = f"<p>{word('还没有备份。', 'There is none yet.')}</p>"
         listed = f'<ul class="programme kept">{lines}</ul>' if lines else none
-        return office_page(asking, title, f"{why}{make}{listed}", path="backups", lead=told)
+        inside = f"{why}{make}{listed}{self._restored(asking)}"
+        return office_page(asking, title, inside, path="backups", lead=told)
+
+    def _restored(self, asking: Asking) -> str:
+        """Houses that were made of backups: each has a whole content folder, accounts and answers."""
+        word, found = asking.word, self.houses(asking)
+        if not found:
+            return ""
+        told = word(
+            "各是一座完整的馆，含账户与答卷。确认没有以 hall serve 打开之后，可以删除。",
+            "Each is a whole house with accounts and answers. Remove it once no hall serve has it open.",
+        )
+        lines = ""
+        for number, one in enumerate(found):
+            name = escape(one["name"])
+            field = Field(
+                "name",
+                word("照抄名称以确认", "Type its name to confirm"),
+                given={"autocomplete": "off", "spellcheck": "false", "maxlength": "60"},
+            )
+            key = f"remove-house-{number}"
+            sent = form(
+                asking,
+                key,
+                f"/office/restored/{name}/remove",
+                (field,),
+                word("删除", "Remove"),
+                style="grave",
+            )
+            opened = " open" if asking.refusal and asking.form.get("of") == key else ""
+            lines += f"""<li><h2><code>{name}</code></h2><details{opened}><summary>{word("删除…", "Remove …")}</summary>
+<div class="desk">{sent}</div></details></li>"""
+        title = word("恢复出的馆", "Restored houses")
+        return f"""<h2 class="small">{title}</h2><p class="quiet">{told}</p><ul class="programme kept">{lines}</ul>"""
 
     def _line(self, asking: Asking, number: int, one: dict[str, Any]) -> str:
         word, name = asking.word, one["name"]
@@ -187,13 +247,17 @@ class _Rooms:
             f"Checked and restored: {came['people']} accounts, {came['answers']} answers. End this hall; open it by:",
         )
         after = word(
-            "恢复后无人登录，一次性代码失效；备份之后删除或撤回的内容会重新出现。",
-            "Nobody is signed in there and one-time codes are void; what was deleted since is there again.",
+            "恢复后无人登录，一次性代码与令牌失效；备份之后删除或撤回的内容会重新出现。",
+            "Nobody is signed in there, one-time codes and tokens are void; what was deleted since is there again.",
         )
         back = f'<a href="{asking.address("/office/backups")}">{word("返回", "Back")}</a>'
         inside = f"""<p role="status">{told}</p><p><code>{escape(command)}</code></p><p class="quiet">{after}</p>
 <p class="doors">{back}</p>"""
         return office_page(asking, word("已恢复", "Restored"), inside, path="backups")
+
+
+def _is_house(path: Path) -> bool:
+    return bool(_HOUSE.fullmatch(path.name)) and path.is_dir() and not path.is_symlink()
 
 
 def _told(path: Path) -> dict[str, Any]:

@@ -30,8 +30,8 @@ class Reception:
         return Shown(Page(title, main), path="/office")
 
     def sign_in(self, asking: Asking) -> Moved:
-        _, token = signed_in(self._counter, asking)
-        return Moved(asking.address("/office"), token)
+        came = signed_in(self._counter, asking)
+        return Moved(asking.address("/office"), came.token, came.mark)
 
     def sign_out(self, asking: Asking) -> Moved:
         if asking.guest is not None:

@@ -80,15 +80,15 @@ class _Rooms:
         label = " ".join(asking.form.get("label", "").split())
         if not 0 < len(label) <= LONGEST_LABEL:
             raise PeopleError("token-label", most=LONGEST_LABEL)
-        # First that it is wanted, then the token: one that nobody wrote down is never there.
-        self._people.note(asking.person.id, "tokens", "make")
-        return {"token": self._house.survey_tokens().make(label)}
+        # Where the row cannot be written the secret is shown to nobody.
+        with self._people.noting(asking.person.id, "tokens", "make"):
+            return {"token": self._house.survey_tokens().make(label)}
 
     def revoke_token(self, asking: Asking) -> dict[str, Any]:
         number = number_in(asking.names["key"])
-        self._people.note(asking.person.id, "tokens", f"revoke {number}")
-        if not self._house.survey_tokens().revoke(number):
-            raise PeopleError("no-token")
+        with self._people.noting(asking.person.id, "tokens", f"revoke {number}"):
+            if not self._house.survey_tokens().revoke(number):
+                raise PeopleError("no-token")
         return {"id": number, "revoked": True}
 
     def suggestions_page(self, asking: Asking) -> Shown:

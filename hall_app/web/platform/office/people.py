@@ -14,6 +14,7 @@ from hall_app.web.platform.office.table import office_page, rows
 __all__ = ["people_deeds", "people_readings"]
 
 ENTRIES = 100  # of the journal on a page
+LISTED = 200  # people on a page: others are found by their address or name
 
 
 def people_readings(counter: Counter) -> tuple[Reading, ...]:
@@ -29,6 +30,7 @@ def people_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one = "people/{key}"
     account = {"address": "its e-mail address", "name": "how its owner is called, or nothing"}
+    typed = {"address": "of the account once more, to confirm"}
     roles = {"roles": f"all that it is to have: {', '.join(Role)}; none for a visitor"}
     return (
         Deed("people", "people", rooms.make, "people/{id}", rooms.everybody_page, fields=account),
@@ -36,6 +38,7 @@ def people_deeds(counter: Counter) -> tuple[Deed, ...]:
         Deed(f"{one}/code", "people", rooms.code, one, rooms.one_page, rooms.code_page),
         Deed(f"{one}/close", "people", rooms.close, one, rooms.one_page),
         Deed(f"{one}/open", "people", rooms.reopen, one, rooms.one_page),
+        Deed(f"{one}/delete", "people", rooms.remove, "people", rooms.one_page, fields=typed),
         Deed(f"{one}/sign-out", "people", rooms.end_sessions, one, rooms.one_page),
         Deed(f"{one}/second-factor", "people", rooms.drop_factor, one, rooms.one_page),
     )
@@ -46,7 +49,7 @@ class _Rooms:
         self._people = counter.people
 
     def everybody(self, asking: Asking) -> list[dict[str, Any]]:
-        return [_told(one) for one in self._people.accounts.all(asking.query.get("q", ""))]
+        return [_told(one) for one in self._people.accounts.all(asking.query.get("q", ""), LISTED)]
 
     def one(self, asking: Asking) -> dict[str, Any]:
         person = self._people.accounts.of(asking.names["key"])
@@ -84,6 +87,13 @@ class _Rooms:
         self._people.accounts.close(asking.person.id, asking.names["key"], closed=False)
         return {"id": asking.names["key"], "closed": False}
 
+    def remove(self, asking: Asking) -> dict[str, Any]:
+        person = self._people.accounts.of(asking.names["key"])
+        if asking.form.get("address", "").strip().casefold() != person.address:
+            raise PeopleError("delete-confirm")
+        self._people.accounts.remove(asking.person.id, person.id)
+        return {"id": person.id, "deleted": True}
+
     def end_sessions(self, asking: Asking) -> dict[str, Any]:
         key = self._people.accounts.of(asking.names["key"]).id  # of nobody none is ended
         return {"id": key, "ended": self._people.sessions.end_all(asking.person.id, "people", key)}
@@ -93,7 +103,8 @@ class _Rooms:
         return {"id": asking.names["key"], "second_factor": False}
 
     def everybody_page(self, asking: Asking) -> Shown:
-        word = asking.word
+        word, wanted = asking.word, asking.query.get("q", "")
+        found = self._people.accounts.all(wanted, LISTED)
         lines = [
             (
                 f'<a href="{asking.address(f"/office/people/{one.id}")}">{escape(one.address)}</a>',
@@ -101,7 +112,7 @@ class _Rooms:
                 _roles(asking, one) or word("参观者", "Visitor"),
                 word("已关闭", "Closed") if one.closed else word("有", "on") if one.second_factor else "–",
             )
-            for one in self._people.accounts.all(asking.query.get("q", ""))
+            for one in found
         ]
         heads = (
             word("邮箱", "Address"),
@@ -119,9 +130,27 @@ class _Rooms:
             "A new account has no password: its page gives a one-time code, by which its owner sets one at /me/open.",
         )
         title = word("人员与角色", "People and roles")
-        inside = f"""{rows(title, heads, lines)}<h2 class="small">{word("新建", "New")}</h2>
+        listed = self._search(asking, wanted) + rows(title, heads, lines)
+        inside = f"""{listed}<h2 class="small">{word("新建", "New")}</h2>
 <div class="desk"><p class="quiet">{told}</p>{new}</div>"""
-        return office_page(asking, title, inside, path="people")
+        return office_page(asking, title, inside, path="people", query={"q": wanted} if wanted else None)
+
+    def _search(self, asking: Asking, wanted: str) -> str:
+        """The form by which people are found, and how many there are."""
+        word, whole = asking.word, self._people.accounts.count()
+        count = self._people.accounts.count(wanted) if wanted else whole
+        told = word(f"共 {whole} 个账户", f"{whole} accounts in all")
+        if wanted:
+            told = word(f"共 {whole} 个账户，符合的有 {count} 个", f"{count} of {whole} accounts")
+        if count > LISTED:
+            told += word(
+                f"，只列出前 {LISTED} 个，其余请查找", f": the first {LISTED} are listed, search for others"
+            )
+        return f"""<form class="find large" action="/office/people" id="form-search">
+<input type="hidden" name="lang" value="{asking.lang}">
+<label class="unseen" for="people-q">{word("邮箱或称呼", "Address or name")}</label>
+<input type="search" id="people-q" name="q" value="{escape(wanted)}" maxlength="200" autocomplete="off">
+<button>{word("查找", "Find")}</button></form><p class="quiet" role="status">{told}</p>"""
 
     def one_page(self, asking: Asking) -> Shown:
         word, person = asking.word, self._people.accounts.of(asking.names["key"])
@@ -162,10 +191,10 @@ class _Rooms:
             (word("状态", "State"), word("已关闭", "closed") if person.closed else word("开放", "open")),
         )
         listed = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts)
-        why = _why(asking) if asking.form.get("of") != "roles" else ""
+        why = _why(asking) if asking.form.get("of") not in ("roles", "delete") else ""
         inside = f"""{why}<dl class="how">{listed}</dl><h2 class="small">{word("角色", "Roles")}</h2>
 <div class="desk">{form(asking, "roles", f"{at}/roles", ticks, word("保存角色", "Save the roles"))}</div>
-<h2 class="small">{word("账户", "Account")}</h2><div class="deeds">{buttons}</div>"""
+<h2 class="small">{word("账户", "Account")}</h2><div class="deeds">{buttons}</div>{_deletion(asking, at)}"""
         return office_page(asking, person.address, inside, path=f"people/{person.id}")
 
     def code_page(self, asking: Asking, came: dict[str, Any]) -> Shown:
@@ -200,6 +229,26 @@ class _Rooms:
             f'<p class="doors"><a href="{escape(more)}">{word("更早的", "Earlier")}</a></p>' if more else ""
         )
         return office_page(asking, title, rows(title, heads, lines) + older, path="audit")
+
+
+def _deletion(asking: Asking, at: str) -> str:
+    word = asking.word
+    field = Field(
+        "address",
+        word("照抄邮箱以确认", "Type the address to confirm"),
+        hint=word(
+            "账户及其收藏、参观记录与预约当即删除，无法恢复；审计记录只留编号。",
+            "The account goes at once with favourites, visits and reservations, and cannot be brought back; the "
+            "journal keeps a number.",
+        ),
+        given={"autocomplete": "off", "spellcheck": "false", "maxlength": "254"},
+    )
+    sent = form(
+        asking, "delete", f"{at}/delete", (field,), word("永久删除", "Delete for good"), style="grave"
+    )
+    opened = " open" if asking.refusal and asking.form.get("of") == "delete" else ""
+    summary = word("删除账户…", "Delete the account …")
+    return f'<details{opened}><summary>{summary}</summary><div class="desk">{sent}</div></details>'
 
 
 def _before(asking: Asking) -> int | None:

@@ -43,15 +43,16 @@ class _Rooms:
         return self._house.survey_standing()
 
     def _made(self, asking: Asking, act: str, task: str) -> tuple[str, bytes]:
-        """First that it is wanted is written down, then it is made. Raises PeopleError, StoreError."""
+        """It is made, and handed out once that is written down. Raises PeopleError, StoreError."""
         key, make = asking.names["key"], self._house.survey_made
         if make is None or key not in {one["id"] for one in self.all(asking)}:
             raise PeopleError("no-questionnaire")
-        self._people.note(asking.person.id, act, f"{key} {task}")
         try:
-            return make(key, task)
+            made = make(key, task)
         except AnswerError as error:
             raise PeopleError("survey-refused", why=str(error)) from None
+        self._people.note(asking.person.id, act, f"{key} {task}")
+        return made
 
     def analysis(self, asking: Asking) -> dict[str, Any]:
         return json.loads(self._made(asking, "analysis", "analysis")[1])

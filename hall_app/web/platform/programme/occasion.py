@@ -75,7 +75,10 @@ class OccasionPages:
         for mine in self._people.bookings.of(asking.person.id):
             if mine.occasion == one.id:
                 cancel = button(asking, "cancel", f"{at}/cancel", word("取消预约", "Cancel it"), hidden={})
-                return f"<p><b>{told_booking(asking, mine)}</b></p>{cancel}"
+                why = (
+                    f'<p class="refused" role="alert">{escape(asking.refusal)}</p>' if asking.refusal else ""
+                )
+                return f"{why}<p><b>{told_booking(asking, mine)}</b></p>{'' if mine.arrived else cancel}"
         if begun or one.cancelled:
             return f"<p>{closed}</p>" if closed else ""
         party = Field(

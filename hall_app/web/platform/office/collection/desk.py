@@ -95,9 +95,9 @@ class Desk:
         self, asking: Asking, key: str, files: Mapping[str, bytes | None], tags: Mapping[str, str]
     ) -> None:
         self._check_place(asking, key, files.get(TOML))
-        self.people.note(asking.person.id, "draft", key)
         try:
-            with self.drafts.lock:
+            # This lock before the journal's, as in publication.
+            with self.drafts.lock, self.people.noting(asking.person.id, "draft", key):
                 try:
                     self.drafts.set(asking.person.id, key, files, tags)
                 except PeopleError as error:
@@ -118,8 +118,8 @@ class Desk:
             self.drafts.see(key, seen)
             if self.moved(key) and not asking.person.may("place"):
                 self._refuse_place(asking)
-            self.people.note(asking.person.id, "draft", key)
-            self.drafts.drop(key)
+            with self.people.noting(asking.person.id, "draft", key):
+                self.drafts.drop(key)
         self.publication.tidy()
 
     def moved(self, key: str) -> bool:

@@ -77,8 +77,8 @@ class Listing:
         with desk.drafts.lock:  # of two who want the same name at once one has it
             if desk.drafts.known(key):
                 raise PeopleError("exhibit-taken")
-            desk.people.note(asking.person.id, "draft", key)
-            desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
+            with desk.people.noting(asking.person.id, "draft", key):
+                desk.drafts.set(asking.person.id, key, {TOML: table.encode(), **texts}, {})
         return {"id": key}
 
     def page(self, asking: Asking) -> Shown:
