@@ -159,7 +159,7 @@ def test_what_was_refused_is_not_told_as_done(unasked):
     one.told("tokens", {"label": "for the paper"})
     one.told("tokens/1/revoke", {})
     one.told("collection/chest/text", {"file": "text.en.md", "text": "A chest.\n"})
-    one.told("collection/chest/drop", {})
+    one.drop("chest")
     assert [act for act, _ in own()] == ["draft", "draft", "tokens", "tokens", "backup"]
 
 
