@@ -76,6 +76,13 @@ def stand_before(page, exhibit: str) -> None:
     )
 
 
+def open_exhibit(page, exhibit: str) -> None:
+    """Its close-up, by the list, once it is drawn."""
+    page.click("[data-testid=list]")
+    page.click(f"[data-testid=list-item-{exhibit}]")
+    page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=PATIENCE)
+
+
 def displayed(page) -> list[float]:
     """Where the picture is really seen from [m]."""
     return page.evaluate("() => hall.displayed()")

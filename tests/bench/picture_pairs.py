@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from bench.browser import at_rest, enter, open_browser
+from bench.browser import at_rest, enter, open_browser, open_exhibit
 from PIL import Image
 from running_hall import running_hall
 
@@ -175,9 +175,7 @@ def _pictures(content: Path, work: Path, checkout: Path | None) -> dict[str, Ima
 
 
 def _look_closely(page, exhibit: str, view: View) -> None:
-    page.click("[data-testid=list]")
-    page.click(f"[data-testid=list-item-{exhibit}]")
-    page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=120_000)
+    open_exhibit(page, exhibit)
     page.mouse.move(560, 200)
     for _ in range(view.near):
         page.mouse.wheel(0, -120)

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT))
 
-from bench.browser import enter, open_browser  # noqa: E402
+from bench.browser import enter, open_browser, open_exhibit  # noqa: E402
 from bench.picture_pairs import lay_pairs, tally  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
@@ -73,12 +73,6 @@ def new_page(browser, size: dict[str, int], *, touch: bool = False):
     page = browser.new_context(viewport=size, has_touch=touch).new_page()
     page.add_init_script("localStorage.setItem('hall.quality', 'high')")
     return page
-
-
-def open_exhibit(page, exhibit: str) -> None:
-    page.click("[data-testid=list]")
-    page.click(f"[data-testid=list-item-{exhibit}]")
-    page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=60_000)
 
 
 def leave(page) -> None:

@@ -8,6 +8,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+try:
+    import fcntl
+except ImportError:  # Windows: what is left there stays
+    fcntl = None
+
 __all__ = ["at_work", "is_left_over", "lock"]
 
 _JUST_BEGUN = 60  # [s] for which what is empty may be about to be locked
@@ -16,6 +21,9 @@ _JUST_BEGUN = 60  # [s] for which what is empty may be about to be locked
 @contextmanager
 def at_work(folder: Path) -> Iterator[None]:
     """While it lasts the folder is no leaving."""
+    if fcntl is None:
+        yield
+        return
     number = os.open(folder, os.O_RDONLY)
     try:
         lock(number)
@@ -41,9 +49,9 @@ def is_left_over(path: Path) -> bool:
 
 
 def lock(number: int) -> bool:
-    """Lock an open file or folder until it is closed; whether it was free."""
-    import fcntl
-
+    """Lock an open file or folder until it is closed; whether it was free. Nothing is, where nothing can be locked."""
+    if fcntl is None:
+        return False
     try:
         fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -108,7 +108,7 @@ def _check_belts(key: str, layer: Layer, pose: Pose, figure: Figure) -> None:
         if step.belt is None:
             continue
         height = float(figure.mannequin.landmarks(pose)[step.belt.mark][1]) + step.belt.rise
-        told = f"{key}.{step.key or f'step.{number}'}.belt"
+        told = f"{key}.{step.named(number)}.belt"
         girth = figure.girth(pose, height)
         if not girth:
             raise SimCoreError(

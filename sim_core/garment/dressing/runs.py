@@ -175,7 +175,7 @@ class Runs:
     def _belt(self, belt: Belt) -> str:
         """How errors name a belt."""
         steps = enumerate(self.layer.program.steps, 1)
-        step = next(step.key or f"step.{number}" for number, step in steps if step.belt == belt)
+        step = next(step.named(number) for number, step in steps if step.belt == belt)
         return f"{self.wearing.outfit.key(self.number)}.{step}.belt"
 
     def _gap(self, x: np.ndarray) -> float:

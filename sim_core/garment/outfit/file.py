@@ -139,7 +139,7 @@ class _Reader:
             for k, step in enumerate(layer.program.steps, 1):
                 if step.belt is not None and step.belt.mark not in known:
                     raise self._wrong(
-                        f"layer.{number}.{step.key or f'step.{k}'}.belt.mark",
+                        f"layer.{number}.{step.named(k)}.belt.mark",
                         f"no landmark {shown(step.belt.mark)} – landmarks: {', '.join(known) or 'none on a stand'}",
                     )
 
@@ -294,7 +294,7 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
     welded, pinned = False, []
     sewn = any(seam.kind == "sewn" for seam in pattern.seams)
     for number, step in enumerate(steps, 1):
-        told = f"{key}.{step.key or f'step.{number}'}"
+        told = f"{key}.{step.named(number)}"
         where = f"{told}.do"
         if step.do == "sew" and welded:
             raise reader._wrong(where, "sew after weld – seams that are welded are one cloth; sew before")

@@ -74,6 +74,10 @@ class Step:
     label: str = ""
     key: str = field(default="", repr=False, compare=False)
 
+    def named(self, number: int) -> str:
+        """How errors name it, the number-th of its layer: as its table does, else by that number."""
+        return self.key or f"step.{number}"
+
     @property
     def timed(self) -> bool:
         """Whether time passes in it."""

@@ -82,16 +82,11 @@ class Cloth:
         flipped = self.faces[:, [0, 2, 1]] + count
         names = tuple(name + side for side in SIDES for name in self.names)
         meeting = np.column_stack([self.middle, self.middle + count])
-
-        def doubled(index: np.ndarray) -> np.ndarray:
-            image = index + index.max() + 1
-            on = np.unique(index[self.middle])
-            image[np.isin(index, on)] = index[np.isin(index, on)]
-            return np.unique(np.r_[index, image], return_inverse=True)[1].astype(np.int32)
-
-        joined = doubled(self.joined)
-        first = np.unique(self.joined, return_index=True)[1]  # a pattern vertex of each joined one
-        ends = first[self.pairs]
+        flat = np.concatenate([self.flat, self.flat + count, meeting]).astype(np.int32)
+        sewn = np.concatenate([self.sewn, self.sewn + count]).astype(np.int32)
+        joined, closed, _ = _meeting(2 * count, flat, sewn)
+        # Each half's own: what is sewn on the middle is drawn together once for each.
+        ends = np.unique(self.joined, return_index=True)[1][self.pairs]
         paths = {f"{name}{SIDES[0]}/{leg}": index for (name, leg), index in self._legs()}
         paths |= {f"{name}{SIDES[1]}/{leg}": index + count for (name, leg), index in self._legs()}
         return Cloth(
@@ -101,14 +96,14 @@ class Cloth:
             np.r_[self.panel, self.panel + len(self.names)].astype(np.int32),
             np.r_[self.panel_of, self.panel_of + len(self.names)].astype(np.int32),
             joined,
-            doubled(self.closed),
+            closed,
             np.concatenate([joined[ends], joined[ends + count]]).astype(np.int32).reshape(-1, 2),
             np.zeros(0, np.int32),
             paths,
             self.fits,
             np.concatenate([self.creases, self.creases + count]).astype(np.int32),
-            np.concatenate([self.flat, self.flat + count, meeting]).astype(np.int32),
-            np.concatenate([self.sewn, self.sewn + count]).astype(np.int32),
+            flat,
+            sewn,
         )
 
     def only(self, kept: np.ndarray) -> Cloth:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hall_app.web.collection.table.columns import column_names
     from hall_app.web.collection.table.difference import Change, changes
     from hall_app.web.collection.table.sheet import Fault, Row, Sheet, read_sheet, table
-    from hall_app.web.collection.table.toml_text import EditError, edited
+    from hall_app.web.collection.table.toml_text import EditError, edited, read_toml_text
 
 __all__ = [
     "Acceptance",
@@ -29,6 +29,7 @@ __all__ = [
     "edited",
     "guarded",
     "read_sheet",
+    "read_toml_text",
     "table",
     "unguarded",
 ]
@@ -46,6 +47,7 @@ _HOME = {
     "edited": "toml_text",
     "guarded": "cells",
     "read_sheet": "sheet",
+    "read_toml_text": "toml_text",
     "table": "sheet",
     "unguarded": "cells",
 }

@@ -15,7 +15,7 @@ from hall_app.web.collection.record import LANGUAGES
 from hall_app.web.collection.table.columns import key
 from hall_app.web.collection.table.difference import Change
 
-__all__ = ["EditError", "edited"]
+__all__ = ["EditError", "edited", "read_toml_text"]
 
 
 class EditError(ValueError):
@@ -28,7 +28,7 @@ def edited(text: str, changes: Iterable[Change]) -> str:
     from tomlkit.exceptions import TOMLKitError
 
     changes = tuple(changes)
-    meant = _read(text)
+    meant = read_toml_text(text)
     for change in changes:
         try:
             _apply(meant, change, dict, dict)
@@ -56,8 +56,9 @@ def edited(text: str, changes: Iterable[Change]) -> str:
     raise EditError("rewritten, it would say something else")
 
 
-def _read(text: str) -> dict[str, Any]:
-    """Raises EditError for what is TOML and cannot be read even so, tomllib.TOMLDecodeError for what is none."""
+def read_toml_text(text: str) -> dict[str, Any]:
+    """Raises tomllib.TOMLDecodeError for what is no TOML, and EditError for what cannot be read even so: at a number of
+    thousands of digits, or thousands of brackets, tomllib gives up in ways of its own."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:

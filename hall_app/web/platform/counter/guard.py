@@ -81,9 +81,9 @@ async def _with_files(request: Request, takes: Takes) -> Form:
     )
     try:
         items = (await parser.parse()).multi_items()
-    except (MultiPartException, ValueError, KeyError) as error:  # of the library that it stands on
-        if isinstance(error, PeopleError):
-            raise
+    except PeopleError:
+        raise
+    except (MultiPartException, ValueError, KeyError):  # of the library that it stands on
         raise PeopleError("form-kind") from None
     plain = [(name, value) for name, value in items if isinstance(value, str)]
     brought = [

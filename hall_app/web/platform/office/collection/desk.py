@@ -11,7 +11,7 @@ from hall_app.content.files import TEXTS
 from hall_app.content.problems import Problem
 from hall_app.house.drafts import Drafts, Examination, Publication, Shelf
 from hall_app.house.people import PeopleError
-from hall_app.web.collection.table import Change, EditError, edited
+from hall_app.web.collection.table import Change, EditError, edited, read_toml_text
 from hall_app.web.platform.counter import Asking, Counter, form
 
 __all__ = ["TOML", "Desk", "listed_problems", "publish_form", "refusal"]
@@ -42,10 +42,7 @@ class Desk:
 
     def table(self, key: str) -> dict[str, Any]:
         """Its exhibit.toml as it is to be, empty where it cannot be read."""
-        try:
-            return _table(self.drafts.text(key, TOML))
-        except PeopleError:
-            return {}
+        return _readable(self.drafts.text(key, TOML))
 
     def title(self, key: str, lang: str) -> str:
         found = self.table(key).get("title")
@@ -130,10 +127,7 @@ class Desk:
 
     def _hall(self, key: str) -> dict[str, Any]:
         """Its exhibit.toml in the hall, empty where it cannot be read."""
-        try:
-            return _table(self.drafts.hall_text(key, TOML))
-        except PeopleError:
-            return {}
+        return _readable(self.drafts.hall_text(key, TOML))
 
     def first_place(self) -> dict[str, float]:
         """Where a new exhibit stands until it is placed."""
@@ -156,13 +150,20 @@ class Desk:
 def _table(text: str) -> dict[str, Any]:
     """An exhibit.toml. Raises PeopleError for what is no TOML, and for what nobody can read even so."""
     try:
-        return tomllib.loads(text)
+        return read_toml_text(text)
     except tomllib.TOMLDecodeError as error:
         raise PeopleError("content-file", why=f"{TOML}: {error}") from None
-    except (ValueError, ArithmeticError, RecursionError) as error:
-        # A number of thousands of digits, thousands of brackets: tomllib gives up in its own ways.
-        why = f"{TOML}: cannot be read ({type(error).__name__}) – shorten its numbers and lists"
+    except EditError as error:
+        why = f"{TOML}: {error} – shorten its numbers and lists"
         raise PeopleError("content-file", why=why) from None
+
+
+def _readable(text: str) -> dict[str, Any]:
+    """An exhibit.toml, empty where it cannot be read."""
+    try:
+        return _table(text)
+    except PeopleError:
+        return {}
 
 
 def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:
