@@ -12,6 +12,7 @@ from hall_app.content import load
 from hall_app.house import House
 from hall_app.house.people import People
 from hall_app.web import create_app
+from hall_app.web.platform.counter import LEAD
 from hall_app.web.platform.office import access
 from survey import mount
 
@@ -48,11 +49,11 @@ def hall(tmp_path, monkeypatch):
 
 
 def routes(router, above: str = ""):
-    """Paths of all that answers GET, those of included routers as well, as they are looked through."""
+    """Paths of all that answers GET by itself, those of included routers as well, as they are looked through."""
     for route in router.routes:
         if inside := getattr(route, "original_router", None):
             yield from routes(inside, above + route.include_context.prefix)
-        elif "GET" in (getattr(route, "methods", None) or ()):
+        elif "GET" in (getattr(route, "methods", None) or ()) and route.name != LEAD:
             yield above + route.path
 
 

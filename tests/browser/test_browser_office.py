@@ -65,7 +65,7 @@ PROGRAMME = (
 OFFICE = (
     *("/office", "/office/events", "/office/events/{activity}", "/office/day?day={day}"),
     *("/office/tokens", "/office/people", "/office/people/{person}", "/office/audit"),
-    *("/office/suggestions", "/office/questionnaires/garment/analysis"),
+    *("/office/suggestions", "/office/questionnaires/garment/analysis", "/office/restored"),
     *("/office/people/nothing", "/office/nothing"),
 )
 

@@ -7,7 +7,7 @@ refusals told; signing_in: what both counters let in by.
 
 from hall_app.web.platform.counter.asking import Asking, Brought, Download, Guest, Moved, Page, Shown
 from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
-from hall_app.web.platform.counter.counter import STATUS, Act, Answer, Counter, View
+from hall_app.web.platform.counter.counter import LEAD, STATUS, Act, Answer, Counter, View
 from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
 from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of, is_whole
 from hall_app.web.platform.counter.leaves import leaf_asked, leaf_ways
@@ -15,6 +15,7 @@ from hall_app.web.platform.counter.pace import RATES, Pace
 from hall_app.web.platform.counter.signing_in import address_field, sign_in_fields, signed_in
 
 __all__ = [
+    "LEAD",
     "OFFICE",
     "PLAIN",
     "RATES",

@@ -85,6 +85,7 @@ _LOST = (
     ("Not available now", "Accounts cannot be reached at the moment: try again in a minute."),
 )
 _log = logging.getLogger(__name__)
+LEAD = "lead"  # name of the routes that answer with the way to a page, and with none themselves
 
 
 class Counter:
@@ -172,7 +173,7 @@ class Counter:
             lang = self._language(request, "", None)
             return RedirectResponse(f"{to.format(**names)}?lang={lang}", 303, headers=_HEADERS)
 
-        self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
+        self._app.add_api_route(path, asked, methods=["GET"], name=LEAD, include_in_schema=False)
 
     def guest(self, request: Request) -> Guest | None:
         """Who is signed in. Raises StoreError."""
