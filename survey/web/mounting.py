@@ -105,12 +105,13 @@ class Mounted:
     def suggestions(self) -> list[dict[str, Any]]:
         """What visitors suggested, the newest first: id, questionnaire, its title, the module's, text, received.
 
-        id: by the answer's pseudonym, never by the withdrawal code that is its name in the store. Raises StoreError.
+        Of every version that was answered, also of a questionnaire that has left the hall. id: by the answer's
+        pseudonym, never by the withdrawal code that is its name in the store. Raises StoreError.
         """
         from survey.export import pseudonym
 
-        published, found = Published(self.questionnaires, self.store), []
-        for asked in (published.as_asked(one) for one in list(self.questionnaires.values())):
+        found = []
+        for asked in self.store.all_frozen():
             modules = {module.id: module.title.model_dump() for module in asked.modules}
             for row in self.store.rows(asked):
                 found += [
@@ -134,24 +135,26 @@ class Mounted:
 
     def standing(self) -> list[dict[str, Any]]:
         """Every questionnaire with its versions that have answers: id, title, version, asked (whether it asks anything
-        here), items, answers of this version, versions {number: answers}. Raises StoreError.
+        here), items, answers of this version, versions {number: answers}. One that has left the hall is told by its
+        last version that was answered. Raises StoreError.
         """
         published = Published(self.questionnaires, self.store)
+        current = {one.id: published.as_asked(one) for one in list(self.questionnaires.values())}
         found = []
-        for one in (published.as_asked(one) for one in list(self.questionnaires.values())):
+        for one in ({one.id: one for one in self.store.all_frozen()} | current).values():
             versions = {number: self.store.count(one.id, number) for number in self.store.versions(one.id)}
             found.append(
                 {
                     "id": one.id,
                     "title": one.title.model_dump(),
                     "version": one.version,
-                    "asked": bool(one.asking(self.offers).items),
+                    "asked": one.id in current and bool(one.asking(self.offers).items),
                     "items": len(one.items),
                     "answers": versions.get(one.version, 0),
                     "versions": versions,
                 }
             )
-        return found
+        return sorted(found, key=lambda one: one["id"])
 
     def of_codes(self, codes: Sequence[str]) -> dict[str, Given]:
         """What was answered under these withdrawal codes; what is no code is left out. Raises StoreError."""
@@ -172,16 +175,19 @@ class Mounted:
         wait([gone], ERASED_WITHIN)
         return gone.done() and gone.result()
 
-    def made(self, key: str, task: str, settings: Mapping[str, Any] | None = None) -> tuple[str, bytes]:
-        """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a questionnaire as it is now:
-        the file's name and what it holds, made by a process of its own and noted in the survey's journal.
+    def made(
+        self, key: str, task: str, version: int | None = None, settings: Mapping[str, Any] | None = None
+    ) -> tuple[str, bytes]:
+        """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a version of a questionnaire,
+        the current one where None: the file's name and what it holds, made by a process of its own and noted in the
+        survey's journal.
 
         settings: of an analysis, as the API takes it. Raises AnswerError, StoreError.
         """
         from survey.export import file_name
-        from survey.web.api import Wanted, find_questionnaire
+        from survey.web.api import Wanted, find_version
 
-        asked = find_questionnaire(Published(self.questionnaires, self.store), key)
+        asked = find_version(Published(self.questionnaires, self.store), self.store, key, version)
         told = Wanted.model_validate({}).model_dump() | dict(settings or {})
         job = {"task": task, "questionnaire": asked.document(), "k": None, "settings": told}
         data = self.jobs.made(job)

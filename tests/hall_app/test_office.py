@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import re
+import time
 from datetime import UTC, datetime, timedelta
 from html import escape
 from urllib.parse import urlencode
@@ -30,6 +31,7 @@ EVENT = {
     "party": 2,
 }
 
+READ_AGAIN = 0.5  # [s] within which a changed questionnaire shows
 HALF_A_LETTER = json.dumps(EVENT | {"text_zh": "\ud83e"}).encode()
 
 # Every address of the office below its two doors, by the act that it takes. GET: to read, POST: to do.
@@ -474,6 +476,50 @@ def test_tokens_are_made_shown_once_and_revoked(counter, people):
     one.told(f"tokens/{kept['id']}/revoke", {})
     assert one.api(f"tokens/{kept['id']}/revoke", {}).status == 404
     assert one.api("tokens", {"label": " "}).status == 400
+
+
+@pytest.fixture
+def questions(counter):
+    """The file of the questionnaire, put back as it was."""
+    path = counter.content / f"questionnaires/{ASKED.id}.toml"
+    text = path.read_text("utf-8")
+    yield path
+    path.write_text(text, "utf-8")
+    time.sleep(READ_AGAIN)
+
+
+def test_what_was_answered_stays_in_reach_under_a_new_version_and_without_its_file(
+    counter, people, questions
+):
+    one, (code, _) = clerk(counter, people, Role.RESEARCHER), (answered(counter), answered(counter, 2))
+    mine, at = f"{pseudonym(code)}.", f"questionnaires/{ASKED.id}"
+    newer = ASKED.version + 1
+    raised = questions.read_text("utf-8").replace(f"\nversion = {ASKED.version}\n", f"\nversion = {newer}\n")
+
+    def told() -> dict:
+        (found,) = [asked for asked in one.told("questionnaires") if asked["id"] == ASKED.id]
+        return found
+
+    for change, version, open_here in (
+        (lambda: questions.write_text(raised, "utf-8"), newer, True),
+        (questions.unlink, ASKED.version, False),
+    ):
+        change()
+        time.sleep(READ_AGAIN)
+        assert (told()["version"], told()["asked"]) == (version, open_here)
+        assert told()["versions"][str(ASKED.version)] >= 1
+        assert any(said["id"].startswith(mine) for said in one.told("suggestions"))
+        assert one.told(f"{at}/analysis?version={ASKED.version}")["n"] >= 2
+        page = one.get("/office/questionnaires?lang=en").text
+        for way in (
+            f"analysis?lang=en&amp;version={ASKED.version}",
+            f"export?lang=en&amp;version={ASKED.version}&amp;",
+        ):
+            assert f"/office/{at}/{way}" in page
+        rows = one.get(f"/office/{at}/export?kind=csv&version={ASKED.version}")
+        assert pseudonym(code) in rows.text
+        assert one.get(f"/office/{at}/export?kind=csv&version=77").status == 400
+        assert f"v{ASKED.version}" in one.get(f"/office/{at}/analysis?lang=en&version={ASKED.version}").text
 
 
 def test_a_suggestion_is_followed_up_and_tells_no_withdrawal_code(counter, people):

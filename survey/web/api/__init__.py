@@ -6,9 +6,9 @@ version that is meant, `guard` admits by token, `rate_limit` counts addresses, `
 """
 
 from survey.web.api.jobs import JOBS_AT_WORK, JOBS_OPEN, Jobs, Run
-from survey.web.api.lookup import find_questionnaire
+from survey.web.api.lookup import find_version
 from survey.web.api.rate_limit import Limit
 from survey.web.api.research import Wanted
 from survey.web.api.routes import router
 
-__all__ = ["JOBS_AT_WORK", "JOBS_OPEN", "Jobs", "Limit", "Run", "Wanted", "find_questionnaire", "router"]
+__all__ = ["JOBS_AT_WORK", "JOBS_OPEN", "Jobs", "Limit", "Run", "Wanted", "find_version", "router"]

@@ -8,7 +8,7 @@ from typing import Any
 
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Counter, Download, Shown
-from hall_app.web.platform.office.deeds import Reading
+from hall_app.web.platform.office.deeds import Reading, number_in
 from hall_app.web.platform.office.table import office_page, rows
 from survey.errors import AnswerError
 
@@ -27,10 +27,11 @@ _ONE = "questionnaires/{key}"
 
 def questionnaire_readings(counter: Counter) -> tuple[Reading, ...]:
     rooms = _Rooms(counter)
-    kinds = {"kind": " or ".join(_FILES)}
+    version = {"version": "one that was answered; left out: the current one"}
+    kinds = {"kind": " or ".join(_FILES), **version}
     return (
         Reading("questionnaires", "questionnaires", rooms.all, rooms.page),
-        Reading(f"{_ONE}/analysis", "analysis", rooms.analysis, rooms.analysis_page),
+        Reading(f"{_ONE}/analysis", "analysis", rooms.analysis, rooms.analysis_page, version),
         Reading(f"{_ONE}/export", "export", rooms.export, rooms.file, kinds),
     )
 
@@ -42,16 +43,23 @@ class _Rooms:
     def all(self, asking: Asking) -> list[dict[str, Any]]:
         return self._house.survey_standing()
 
+    def _one(self, asking: Asking) -> tuple[str, int]:
+        """Which questionnaire is asked for, in which version. Raises PeopleError, StoreError."""
+        for one in self.all(asking):
+            if one["id"] == asking.names["key"]:
+                return one["id"], number_in(asking.query.get("version", str(one["version"])))
+        raise PeopleError("no-questionnaire")
+
     def _made(self, asking: Asking, act: str, task: str) -> tuple[str, bytes]:
         """It is made, and handed out once that is written down. Raises PeopleError, StoreError."""
-        key, make = asking.names["key"], self._house.survey_made
-        if make is None or key not in {one["id"] for one in self.all(asking)}:
+        (key, version), make = self._one(asking), self._house.survey_made
+        if make is None:
             raise PeopleError("no-questionnaire")
         try:
-            made = make(key, task)
+            made = make(key, task, version)
         except AnswerError as error:
             raise PeopleError("survey-refused", why=str(error)) from None
-        self._people.note(asking.person.id, act, f"{key} {task}")
+        self._people.note(asking.person.id, act, f"{key} version {version} {task}")
         return made
 
     def analysis(self, asking: Asking) -> dict[str, Any]:
@@ -59,9 +67,8 @@ class _Rooms:
 
     def export(self, asking: Asking) -> dict[str, Any]:
         """Where the file is: programs fetch it there, with the same session."""
-        if asking.names["key"] not in {one["id"] for one in self.all(asking)}:
-            raise PeopleError("no-questionnaire")
-        at = f"/office/questionnaires/{asking.names['key']}/export?kind="
+        key, version = self._one(asking)
+        at = f"/office/questionnaires/{key}/export?version={version}&kind="
         return {"files": {kind: f"{at}{kind}" for kind in _FILES}}
 
     def file(self, asking: Asking) -> Download:
@@ -71,36 +78,42 @@ class _Rooms:
         name, data = self._made(asking, "export", kind)
         return Download(data, name, _FILES[kind][0])
 
-    def page(self, asking: Asking) -> Shown:
-        word, person = asking.word, asking.person
-        lines = []
-        for one in self.all(asking):
-            at = f"/office/questionnaires/{one['id']}"
-            ways = []
-            if person.may("analysis") and one["answers"]:
-                ways.append((asking.address(f"{at}/analysis"), word("分析", "Analysis")))
-            if person.may("export"):
+    def _lines(self, asking: Asking, one: dict[str, Any]) -> list[tuple[str, ...]]:
+        """Of a questionnaire: its version, then earlier ones that were answered, the newest first."""
+        word, at = asking.word, f"/office/questionnaires/{one['id']}"
+        name, lines = escape(one["title"][asking.lang]), []
+        if one["asked"]:
+            name = f'<a href="/questionnaires/{escape(one["id"])}?lang={asking.lang}">{name}</a>'
+        for number, answers in sorted({one["version"]: 0, **one["versions"]}.items(), reverse=True):
+            now, ways = number == one["version"], []
+            if asking.person.may("analysis") and answers:
+                way = asking.address(f"{at}/analysis", version=str(number))
+                ways.append((way, word("分析", "Analysis")))
+            if asking.person.may("export"):
                 ways += [
-                    (asking.address(f"{at}/export", kind=kind), name or word("编码本", "Codebook"))
-                    for kind, (_, name) in _FILES.items()
+                    (
+                        asking.address(f"{at}/export", version=str(number), kind=kind),
+                        title or word("编码本", "Codebook"),
+                    )
+                    for kind, (_, title) in _FILES.items()
                 ]
-            links = " ".join(f'<a href="{escape(where)}">{escape(name)}</a>' for where, name in ways)
-            earlier = "; ".join(
-                f"v{number}: {count}"
-                for number, count in sorted(one["versions"].items())
-                if number != one["version"]
-            )
+            links = " ".join(f'<a href="{escape(where)}">{escape(title)}</a>' for where, title in ways)
+            state = word("开放", "open") if one["asked"] else word("不提问", "asks nothing")
             lines.append(
                 (
-                    f'<a href="/questionnaires/{escape(one["id"])}?lang={asking.lang}">'
-                    f"{escape(one['title'][asking.lang])}</a>",
-                    str(one["version"]),
-                    f"<b>{one['answers']}</b>" + (f" ({escape(earlier)})" if earlier else ""),
-                    str(one["items"]),
-                    word("开放", "open") if one["asked"] else word("不提问", "asks nothing"),
+                    name,
+                    str(number),
+                    f"<b>{answers}</b>",
+                    str(one["items"]) if now else "–",
+                    state if now else word("旧版", "earlier"),
                     f'<span class="doors-in">{links}</span>',
                 )
             )
+        return lines
+
+    def page(self, asking: Asking) -> Shown:
+        word = asking.word
+        lines = [line for one in self.all(asking) for line in self._lines(asking, one)]
         heads = (
             word("问卷", "Questionnaire"),
             word("版本", "Version"),
@@ -123,7 +136,8 @@ class _Rooms:
         word, key = asking.word, asking.names["key"]
         titles = {one["id"]: one["title"][asking.lang] for one in self.all(asking)}
         found = self.analysis(asking)
-        name = f"{titles[key]} · {word('分析', 'Analysis')}"
+        version = self._one(asking)[1]
+        name = f"{titles[key]} · {word('分析', 'Analysis')} · v{version}"
         facts = (
             (word("答卷", "Answers"), found.get("n")),
             ("KMO", found.get("kmo")),
@@ -144,7 +158,8 @@ class _Rooms:
         back = f'<a href="{asking.address("/office/questionnaires")}">{word("返回", "Back")}</a>'
         inside = f"""<dl class="how">{listed}</dl>{rows(name, heads, lines)}{warned}
 <p class="quiet">{more}</p><p class="doors">{back}</p>"""
-        return office_page(asking, name, inside, path=f"questionnaires/{key}/analysis")
+        where, query = f"questionnaires/{key}/analysis", {"version": str(version)}
+        return office_page(asking, name, inside, path=where, query=query)
 
 
 def _figure(value: Any) -> str:
