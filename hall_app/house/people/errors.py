@@ -137,6 +137,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "您已签到，不能再取消；如有误，请联系前台。",
         "You have been checked in, and this can no longer be cancelled: tell the desk if it is a mistake.",
     ),
+    "occasion-over": (
+        "此场已结束，预约不能再取消；如有误，请联系前台。",
+        "It is over, and a reservation can no longer be cancelled: tell the desk if it is a mistake.",
+    ),
     "occasion-slots": (
         "每段至少 5 分钟，一次最多 {most} 段。",
         "A slot has 5 minutes at least, and {most} slots are planned at once at most.",
