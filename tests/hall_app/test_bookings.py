@@ -292,9 +292,26 @@ def test_what_is_over_is_no_longer_cancelled_by_who_booked_it(people, ledger):
     assert [left.place for left in people.bookings.for_occasion(occasion)] == [1]
 
 
+def test_what_is_cancelled_while_the_answer_is_under_way_is_told_so(people, monkeypatch):
+    occasion, (person,) = planned(people), visitors(people, 1)
+    made, look = people.bookings.book(person, occasion, 1, "key"), people.bookings.of
+
+    def too_late(whose: str):
+        monkeypatch.undo()
+        people.bookings.cancel(person, "cancel booking", made.id, person=person)
+        return look(whose)
+
+    monkeypatch.setattr(people.bookings, "of", too_late)
+    with refused("booking-cancelled"):
+        people.bookings.book(person, occasion, 1, "key")
+
+
 @pytest.mark.parametrize(
     ("changed", "key"),
     [
+        ({"ends": datetime(9999, 12, 31, 23, 30, tzinfo=UTC)}, "occasion-far"),
+        ({"begins": datetime(1, 1, 1, tzinfo=UTC)}, "occasion-far"),
+        ({"ends": SOON.replace(year=SOON.year + 12, day=1)}, "occasion-far"),
         ({"title_en": " "}, "occasion-title"),
         ({"title_zh": "长" * 121}, "occasion-title"),
         ({"ends": SOON}, "occasion-times"),

@@ -169,6 +169,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "请按 2026-12-05T14:00 的形式填写时间，结束须晚于开始。",
         "Write times as 2026-12-05T14:00, with the end after the beginning.",
     ),
+    "occasion-far": (
+        "时间须在 {first} 年至 {last} 年之间。",
+        "Give times in the years from {first} to {last}.",
+    ),
     "occasion-past": (
         "{when} 已经过去，请填写将来的时间。",
         "{when} is past: give a time to come.",

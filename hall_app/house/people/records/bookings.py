@@ -69,8 +69,10 @@ class Bookings:
                 connection.execute(tables.booking.insert().values(**given, **new))
         except _KnownError:
             pass
-        (booking,) = (one for one in self.of(person) if one.occasion == occasion)
-        return booking
+        for booking in self.of(person):
+            if booking.occasion == occasion:
+                return booking
+        raise PeopleError("booking-cancelled")  # meanwhile, by another page of the same person or by the desk
 
     def of(self, person: str) -> tuple[Booking, ...]:
         """All of one person, the first made first."""
