@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts", "node_matrix"]
+__all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts", "node_matrix", "row_size"]
 
 VERTICES, INDICES = 34962, 34963  # what a buffer view holds
 FLOAT, U16, U32 = 5126, 5123, 5125
 COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 HEADER = 20  # bytes ahead of the JSON part: the file's header and the part's own
 MAGIC, JSON_PART = b"glTF", b"JSON"
 
@@ -46,7 +46,9 @@ class GlbParts:
         view = self.document["bufferViews"][entry["bufferView"]]
         kind, width = np.dtype(COMPONENTS[entry["componentType"]]), WIDTHS[entry["type"]]
         start = self.begin + view.get("byteOffset", 0) + entry.get("byteOffset", 0)
-        stride = view.get("byteStride", width * kind.itemsize)
+        stride = view.get("byteStride", row_size(entry))
+        if stride < row_size(entry):  # a few bytes would be as many rows as it says
+            raise ValueError("an accessor's rows overlap")
         rows = np.ndarray((entry["count"], width), kind, self.data, start, (stride, kind.itemsize))
         values = rows.astype(float)
         return values / np.iinfo(kind).max if entry.get("normalized") else values
@@ -246,6 +248,11 @@ class GlbFile:
         size = 12 + 8 + len(text) + 8 + len(self.blob)
         head = struct.pack("<4sII", MAGIC, 2, size) + struct.pack("<I4s", len(text), JSON_PART)
         return head + text + struct.pack("<I4s", len(self.blob), b"BIN\0") + bytes(self.blob)
+
+
+def row_size(accessor: dict[str, Any]) -> int:
+    """Bytes of one row of an accessor, packed closely."""
+    return np.dtype(COMPONENTS[accessor["componentType"]]).itemsize * WIDTHS[accessor["type"]]
 
 
 def node_matrix(node: dict[str, Any]) -> np.ndarray:

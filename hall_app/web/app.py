@@ -25,6 +25,7 @@ from hall_app.content.views.writing import writing_file
 from hall_app.house.house import House
 from hall_app.house.people import People
 from hall_app.show.pieces import Pieces
+from hall_app.web.answers.head import HeadToo
 from hall_app.web.answers.packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
 from hall_app.web.collection.routes import OPEN, add_collection, collection_now
@@ -80,7 +81,7 @@ def create_app(
     )
 
     app.add_middleware(_Guard)
-    app.add_middleware(_HeadToo)
+    app.add_middleware(HeadToo)
     app.add_middleware(Doorkeeper, addresses=addresses)
     app.add_middleware(Portions)
     app.add_exception_handler(404, lambda request, error: lost_answer(house.content, request, error))
@@ -130,17 +131,6 @@ class _Guard:
             await send(message)
 
         await self.app(scope, receive, guarded if scope["type"] == "http" else send)
-
-
-class _HeadToo:
-    """Answers HEAD wherever there is a GET; the server itself leaves the body out."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        asked = {**scope, "method": "GET"} if scope.get("method") == "HEAD" else scope
-        await self.app(asked, receive, send)
 
 
 def _pack_first_view(pieces: Pieces) -> None:

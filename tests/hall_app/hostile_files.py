@@ -1,4 +1,4 @@
-"""Forty uploads that mean harm, or are broken: name, content, use."""
+"""Fifty uploads that mean harm, or are broken: name, content, use."""
 
 from __future__ import annotations
 
@@ -54,6 +54,20 @@ def box() -> bytes:
     return data
 
 
+def claiming(**accessor: object) -> bytes:
+    """A GLB of a few hundred bytes, a triangle by what it says, whose one accessor tells of itself what is given."""
+    told = {"componentType": 5126, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1], **accessor}
+    document = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [told],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36}],
+    }
+    return glb(document, struct.pack("<II", 36, 0x004E4942) + bytes(36))
+
+
 def text_bomb() -> bytes:
     """A PNG whose text unpacks to 60 MB."""
     body = b"zTXt" + b"Comment\0\0" + zlib.compress(bytes(60_000_000))
@@ -103,6 +117,20 @@ def hostile_files() -> list[tuple[str, bytes, str]]:
         (
             "huge.glb",
             glb(asset | {"accessors": [{"count": 2**60, "componentType": 5126, "type": "VEC3"}]}),
+            "hall",
+        ),
+        ("claims-nothing-held.glb", claiming(count=30_000_000), "hall"),
+        ("claims-a-view.glb", claiming(count=30_000_000, bufferView=0), "hall"),
+        (
+            "claims-sparse.glb",
+            claiming(
+                count=30_000_000,
+                sparse={
+                    "count": 1,
+                    "indices": {"bufferView": 0, "componentType": 5125},
+                    "values": {"bufferView": 0},
+                },
+            ),
             "hall",
         ),
         ("loop.glb", glb(asset | {"scenes": [{"nodes": [0]}], "nodes": [{"children": [0]}]}), "hall"),

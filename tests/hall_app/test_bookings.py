@@ -17,8 +17,10 @@ import pytest
 from form_visitor import Answer, Visitor
 from full_matrix import by_day
 from open_counter import OpenCounter, open_counter
+from sqlalchemy import update
 
 from hall_app.house.people import People, PeopleError
+from hall_app.house.people.database import Ledger, tables
 from hall_app.house.people.records import Plan
 
 PASSWORD = "a robe of blue ramie"
@@ -31,6 +33,21 @@ def people(database) -> Iterator[People]:
     found = People(database)
     yield found
     found.close()
+
+
+@pytest.fixture
+def ledger(database) -> Iterator[Ledger]:
+    found = Ledger(database)
+    yield found
+    found.close()
+
+
+def moved(ledger: Ledger, occasion: str, **hours: int) -> None:
+    """As if time had passed: its beginning or end that many hours from now."""
+    times = {name: datetime.now(UTC) + timedelta(hours=away) for name, away in hours.items()}
+    with ledger.change("console", "events", occasion) as connection:
+        table = tables.occasion
+        connection.execute(update(table).where(table.c.id == occasion).values(**times))
 
 
 def plan(**changed) -> Plan:
@@ -240,9 +257,61 @@ def test_what_is_over_or_off_is_not_booked(people):
     assert off in [one.id for one in people.occasions.to_come(past=True)]
 
 
+def test_what_is_off_or_has_begun_is_given_to_nobody_who_waits(people, ledger):
+    """He would be told that he is booked for what does not take place, or what he cannot come to any more."""
+    off, begun = (planned(people, places=1, party=1) for _ in range(2))
+    one, other = visitors(people, 2)
+    for occasion in (off, begun):
+        for person in (one, other):
+            people.bookings.book(person, occasion, 1, occasion)
+    people.occasions.call_off("console", off)
+    moved(ledger, begun, begins=-1)
+    for occasion, who in ((off, one), (begun, "")):
+        booked, waiting = people.bookings.for_occasion(occasion)
+        people.bookings.cancel(one, "cancel booking", booked.id, person=who)
+        assert [made.place for made in people.bookings.for_occasion(occasion)] == [1]
+        assert people.occasions.of(occasion).taken == 0
+    people.occasions.change("console", off, plan(places=5, party=1))
+    assert people.bookings.for_occasion(off)[0].place == 1
+    people.occasions.change("console", begun, plan(places=1, party=1))
+    assert people.bookings.for_occasion(begun)[0].place == 0, (
+        "it begins later now, and who waited has the place"
+    )
+
+
+def test_what_is_over_is_no_longer_cancelled_by_who_booked_it(people, ledger):
+    """Whoever did not come would have it that he never said he would."""
+    occasion, (one, other) = planned(people, places=1, party=1), visitors(people, 2)
+    made, waits = (people.bookings.book(person, occasion, 1, person) for person in (one, other))
+    moved(ledger, occasion, begins=-2, ends=-1)
+    for mine in (made, waits):
+        with refused("occasion-over"):
+            people.bookings.cancel(mine.person, "cancel booking", mine.id, person=mine.person)
+    assert len(people.bookings.for_occasion(occasion)) == 2
+    people.bookings.cancel("console", "reservations", made.id)  # the desk may
+    assert [left.place for left in people.bookings.for_occasion(occasion)] == [1]
+
+
+def test_what_is_cancelled_while_the_answer_is_under_way_is_told_so(people, monkeypatch):
+    occasion, (person,) = planned(people), visitors(people, 1)
+    made, look = people.bookings.book(person, occasion, 1, "key"), people.bookings.of
+
+    def too_late(whose: str):
+        monkeypatch.undo()
+        people.bookings.cancel(person, "cancel booking", made.id, person=person)
+        return look(whose)
+
+    monkeypatch.setattr(people.bookings, "of", too_late)
+    with refused("booking-cancelled"):
+        people.bookings.book(person, occasion, 1, "key")
+
+
 @pytest.mark.parametrize(
     ("changed", "key"),
     [
+        ({"ends": datetime(9999, 12, 31, 23, 30, tzinfo=UTC)}, "occasion-far"),
+        ({"begins": datetime(1, 1, 1, tzinfo=UTC)}, "occasion-far"),
+        ({"ends": SOON.replace(year=SOON.year + 12, day=1)}, "occasion-far"),
         ({"title_en": " "}, "occasion-title"),
         ({"title_zh": "长" * 121}, "occasion-title"),
         ({"ends": SOON}, "occasion-times"),

@@ -13,6 +13,7 @@ from full_matrix import by_day
 
 from hall_app.check import check
 from hall_app.content import ContentError, Watcher, exhibit_json, load
+from hall_app.content.models import GlbError, read_glb
 
 LONG = "x" * 300
 DEEP = "deep = " + "[" * 5000 + "]" * 5000
@@ -59,6 +60,43 @@ def loop(document: dict) -> None:
     document["scenes"] = [{"nodes": [0]}]
 
 
+def claim(change: dict, view: dict | None = None) -> Callable[[dict], None]:
+    """The corners' accessor, and perhaps its view, told of otherwise; a key of None is left out."""
+
+    def told(document: dict) -> None:
+        accessor = first_accessor(document)
+        document["bufferViews"][accessor["bufferView"]].update(view or {})
+        for key, value in change.items():
+            accessor.pop(key, None) if value is None else accessor.update({key: value})
+
+    return told
+
+
+def sparse(count: int, named: int = 1, **values: int) -> dict:
+    told = {"indices": {"bufferView": 0, "componentType": 5121}, "values": {"bufferView": 0, **values}}
+    return {"bufferView": None, "count": count, "sparse": {"count": named, **told}}
+
+
+def many_shapes(document: dict) -> None:
+    """A hundred meshes of the same corners, none of them shown."""
+    first_accessor(document).update(sparse(800_000))
+    first_accessor(document).pop("bufferView")
+    document["meshes"] += [document["meshes"][0]] * 100
+
+
+CLAIMS: dict[str, tuple[Callable[[dict], object], str]] = {
+    "more than its view holds": (claim({"count": 30_000_000}), "claims more than"),
+    "begun beyond its view": (claim({"byteOffset": 100_000}), "claims more than"),
+    "rows that overlap": (claim({}, {"byteStride": 1}), "inconsistent"),
+    "a view beyond the file": (claim({}, {"byteLength": 10**9}), "inconsistent"),
+    "a view begun before the file": (claim({}, {"byteOffset": -4}), "inconsistent"),
+    "a count that is no number": (claim({"count": True}), "inconsistent"),
+    "corners nobody gives": (claim({"bufferView": None}), "holds nothing"),
+    "zeros without end": (claim(sparse(30_000_000)), "claims more than"),
+    "more changed than there is": (claim(sparse(8, named=9)), "claims more than"),
+    "changes beyond their view": (claim(sparse(1, byteOffset=90_000)), "claims more than"),
+    "the same again and again": (many_shapes, "MB of memory to read"),
+}
 MODELS: dict[str, tuple[Callable[[dict], object], str]] = {
     "extensions null": (lambda d: d.update(extensionsUsed=None), "inconsistent"),
     "extensions a number": (lambda d: d.update(extensionsUsed=5), "inconsistent"),
@@ -89,6 +127,24 @@ def test_odd_models(house: Path, case: str):
     assert line.startswith("exhibits/chest/exhibit.toml: models.hall: ")
     assert what in line
     assert "other" in [exhibit.id for exhibit in load(house).exhibits]
+
+
+@pytest.mark.parametrize("case", CLAIMS)
+def test_a_model_that_claims_more_than_it_holds(house: Path, case: str):
+    """A few hundred bytes of it would fill the memory of whoever reads it."""
+    change, what = CLAIMS[case]
+    path = rewritten(house, change)
+    with pytest.raises(GlbError, match=what):
+        read_glb(path)
+    assert what in left_out(house)
+
+
+def test_a_model_of_too_many_triangles_is_read_once(house: Path, monkeypatch: pytest.MonkeyPatch):
+    """The second reader takes everything apart: it is not asked where the number alone says that it cannot stay."""
+    monkeypatch.setattr("hall_app.check.files.models.MOST_TRIANGLES", 11)
+    monkeypatch.setattr("trimesh.load_scene", lambda path: pytest.fail("read by trimesh"))
+    monkeypatch.setattr("hall_app.check.files.budget.TRIANGLES", {"hall": 11, "close": 11})
+    assert {problem.what for problem in check(house)} == {"12 triangles, at most 11"}
 
 
 def test_a_texture_that_would_fill_the_memory(house: Path):

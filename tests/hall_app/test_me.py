@@ -222,6 +222,9 @@ def test_favourites_and_visits_are_kept_when_asked(plain_hall):
     visitor.get(f"/api/exhibits/{exhibit}")
     assert f"/?exhibit={exhibit}" not in visitor.get("/me?lang=en").text, "nothing is kept unasked"
     visitor.send("/me?lang=en", "/me/visits")
+    assert visitor.ask("HEAD", f"/api/exhibits/{exhibit}").status == 200
+    for _ in range(20):
+        assert f"/?exhibit={exhibit}" not in visitor.get("/me?lang=en").text, "who asks so sees nothing of it"
     visitor.get(f"/api/exhibits/{exhibit}")
     for _ in range(100):
         if f"/?exhibit={exhibit}" in (shown := visitor.get("/me?lang=en")).text:

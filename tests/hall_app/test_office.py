@@ -379,6 +379,21 @@ def test_nothing_is_planned_in_the_past(counter, people):
     assert one.told(f"events/{running}")["title_en"] == "Goes on"
 
 
+@pytest.mark.parametrize("year", ["0001", "1969", "2199", "9999"])
+def test_nothing_is_planned_in_another_age(counter, people, year):
+    """No clock in the world tells some of these hours: a page that listed one would be none for anybody."""
+    one = clerk(counter, people, Role.CURATOR)
+    key = one.told("events", EVENT)["id"]
+    hours = ("0001-01-01T00:10+00:00", "0001-01-01T23:50+00:00")
+    hours = hours if year == "0001" else (f"{year}-12-31T22:30+00:00", f"{year}-12-31T23:30+00:00")
+    given = EVENT | dict(zip(("begins", "ends"), hours, strict=True))
+    for path, more in (("events", {}), ("visits", {"minutes": 30}), (f"events/{key}", {})):
+        told = one.api(path, given | more)
+        assert (told.status, json.loads(told.body)["error"]) == (400, "occasion-far"), path
+        assert f"1970 to {SOON.year + 10}" in told.text
+        assert "1970 年" in one.api(f"{path}?lang=zh", given | more).text
+
+
 def test_hours_are_of_visits_and_ask_for_no_kind(counter, people):
     one = clerk(counter, people, Role.CURATOR)
     page = one.get("/office/events?lang=en")

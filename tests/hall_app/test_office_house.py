@@ -13,12 +13,13 @@ import event_loop
 import pytest
 from office_clerk import clerk
 from office_stock import Slow
-from open_counter import open_counter
+from open_counter import answered, open_counter
 
 from hall_app.content import load
 from hall_app.house.baking import ROOM, Bake, BakingQueue
 from hall_app.house.people import People, Role
 from hall_app.house.safekeeping import check_archive, tidy
+from hall_app.web.answers import HeadToo
 from survey import Store
 
 
@@ -178,6 +179,33 @@ def test_answers_are_counted_and_handed_out(unasked):
     assert json.loads(refused.body)["error"] == "survey-refused"
     assert one.api("questionnaires/nothing/analysis").status == 404
     assert one.ask("GET", "/office/questionnaires/garment/export?kind=exe").status == 404
+
+
+def test_who_asks_only_whether_it_is_there_leaves_no_row(tmp_path, quick_hashes):
+    """HEAD has no body: the journal must not tell of a file that nobody got."""
+    with open_counter(tmp_path, around=HeadToo) as house:
+        answered(house)
+        one = clerk(house, house.people, Role.ADMINISTRATOR)
+        name = one.told("backups", {})["name"]
+        token = house.survey.store.tokens.make("for the paper")
+        before, audit = house.people.journal.entries(), house.survey.store.audit
+        noted, asked = audit.entries(), "questionnaires/garment"
+        for path in (f"{asked}/export?kind=csv", f"{asked}/analysis", f"backups/{name}/file", "people"):
+            for door in ("/office", "/api/office"):
+                told = one.ask("HEAD", f"{door}/{path}")
+                assert (told.status, told.headers["Allow"]) == (405, "GET"), path
+        rows = f"/api/v1/{asked}/rows"
+        known = {"Authorization": f"Bearer {token}"}
+        assert one.ask("HEAD", rows, headers=known).status == 405
+        assert house.people.journal.entries() == before
+        assert audit.entries() == noted
+        assert one.ask("GET", f"/office/{asked}/export?kind=csv").status == 200
+        assert one.ask("GET", rows, headers=known).status == 200
+        assert (len(house.people.journal.entries()), len(audit.entries())) == (
+            len(before) + 1,
+            len(noted) + 2,
+        )
+        assert one.ask("HEAD", "/office").status == one.ask("HEAD", "/me").status == 200
 
 
 def test_a_bake_is_told_stopped_and_tried_again(counter):

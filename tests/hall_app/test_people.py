@@ -12,13 +12,14 @@ import time
 import zipfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 
 import argon2
 import pyotp
 import pytest
-from sqlalchemy import create_engine, inspect, select, text, update
+from sqlalchemy import Connection, create_engine, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError
 
 from hall_app.house.people import ACTS, OWN_ACTS, People, PeopleError, Role, existing_people, may
@@ -154,6 +155,48 @@ def test_a_change_that_fails_leaves_no_row_and_one_that_holds_leaves_one(ledger)
     with ledger.change("console", "people", "a") as connection:
         connection.execute(tables.user.insert().values(**row))
     assert made() == 1
+
+
+SOUGHT = (
+    "Öztürk",
+    "öztürk",
+    "ÖZTÜRK",
+    "Groß",
+    "groß",
+    "gross",
+    "GROSS",
+    "Éva",
+    "éva",
+    "E\u0301VA",
+    "ｇｒｏｓｓ",
+)
+
+
+def test_people_are_found_however_their_names_are_written(people):
+    """In letters of every kind, not only those that a database folds by itself."""
+    someone = people.accounts.sign_up("someone@example.org", PASSWORD, name="Somebody else")
+    found = people.accounts.sign_up("x@straße.example", PASSWORD, name="Öztürk Groß Éva")
+    for wanted in (*SOUGHT, "STRASSE", "Straße"):
+        assert [one.id for one in people.accounts.all(wanted)] == [found.id], wanted
+        assert people.accounts.count(wanted) == 1
+    people.accounts.set_profile(found.id, name="张 Şahin", language="en")
+    assert [people.accounts.count(wanted) for wanted in ("groß", "张", "şahin", "ŞAHIN")] == [0, 1, 1, 1]
+    assert people.accounts.count("%") == people.accounts.count("_") == 0
+    assert people.accounts.count() == people.accounts.count("e") == 2
+    assert people.accounts.of(someone.id).name == "Somebody else"
+
+
+def test_people_of_an_older_schema_are_found_too(database):
+    first = People(database)
+    person = first.accounts.sign_up(ADDRESS, PASSWORD, name="Öztürk Groß Éva")
+    first.close()
+    with stepped_back(database, "0008"):
+        pass
+    again = People(database)
+    assert [[one.id for one in again.accounts.all(wanted)] for wanted in SOUGHT] == [[person.id]] * len(
+        SOUGHT
+    )
+    again.close()
 
 
 def test_there_is_no_other_way_to_change_anything(people, ledger):
@@ -637,6 +680,20 @@ def test_two_stores_may_share_a_database_server_and_an_older_schema_is_brought_u
     stepwise.dispose()
 
 
+@contextmanager
+def stepped_back(database: Path | str, number: str) -> Iterator[Connection]:
+    """A closed house as an older version left it, once the block has taken out what was not there yet."""
+    here = isinstance(database, Path)
+    engine = create_engine(f"sqlite:///{database / 'people.sqlite'}" if here else database)
+    with engine.begin() as connection:
+        if not here:
+            connection.execute(text("SET search_path TO people"))
+        yield connection
+        connection.execute(text('ALTER TABLE "user" DROP COLUMN name_folded'))  # since 0009
+        connection.execute(text("UPDATE alembic_version SET version_num = :number"), {"number": number})
+    engine.dispose()
+
+
 @pytest.mark.parametrize(
     "had", [(), ("revision",)], ids=["before revisions", "with the table under the older name"]
 )
@@ -644,15 +701,9 @@ def test_a_house_of_an_older_schema_is_brought_up_and_keeps_its_people(database,
     first = People(database)
     person = first.accounts.sign_up(ADDRESS, PASSWORD)
     first.close()
-    engine = create_engine(
-        database if isinstance(database, str) else f"sqlite:///{database / 'people.sqlite'}"
-    )
-    space = "people." if isinstance(database, str) else ""
-    with engine.begin() as connection:
+    with stepped_back(database, "0003") as connection:
         for table in {"answer_code", "revision"} - {*had}:
-            connection.execute(text(f"DROP TABLE {space}{table}"))
-        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0003'"))
-    engine.dispose()
+            connection.execute(text(f"DROP TABLE {table}"))
     again = People(database)
     assert again.accounts.of(person.id).address == ADDRESS
     code = "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
@@ -668,13 +719,8 @@ def test_withdrawal_codes_leave_a_house_of_an_older_schema(database):
     for key in (f"{code}.fabric", "a1.culture"):
         first.followups.set("console", key, "done", "Longer by 2 cm")
     first.close()
-    engine = create_engine(
-        database if isinstance(database, str) else f"sqlite:///{database / 'people.sqlite'}"
-    )
-    space = "people." if isinstance(database, str) else ""
-    with engine.begin() as connection:
-        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0005'"))
-    engine.dispose()
+    with stepped_back(database, "0005"):
+        pass
     again = People(database)
     named = f"{pseudonym(code)}.fabric"
     assert {one.id: one.note for one in again.followups.all().values()} == dict.fromkeys(
@@ -739,8 +785,8 @@ def test_looks_leave_the_journal_of_a_house_of_an_older_schema(database, ledger)
     with ledger.change(person.id, "visits", person.id) as connection:
         for exhibit in ("robe", "belt", "gown"):
             connection.execute(tables.look.insert().values(user=person.id, exhibit=exhibit, day=today))
-        space = "" if ledger_is_sqlite(ledger) else "people."
-        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0006'"))
+    with stepped_back(database, "0006"):
+        pass
     again = People(database)
     assert [entry.act for entry in again.journal.entries()] == ["sign up"]
     assert {one.exhibit for one in again.keepsakes.looks(person.id)} == {"robe", "belt", "gown"}

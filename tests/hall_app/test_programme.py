@@ -112,6 +112,20 @@ def test_who_was_checked_in_stays_so(counter, planned):
     assert counter.people.bookings.of(person) == ()
 
 
+def test_who_did_not_come_cannot_undo_that_he_had_booked(counter, planned, monkeypatch):
+    key, (visitor, address) = planned(), member(counter)
+    page = visitor.send(f"/activities/{key}?lang=en", "form-book")
+    assert f"/activities/{key}/cancel" in page.text
+    later = SOON + timedelta(hours=3)
+    for place in ("house.people.records.bookings", "web.platform.programme.occasion"):
+        monkeypatch.setattr(f"hall_app.{place}.now", lambda: later)
+    told = visitor.send(page, f"/activities/{key}/cancel")
+    assert told.status == 400
+    assert "It is over" in told.text
+    assert f"/activities/{key}/cancel" not in told.text
+    assert len(counter.people.bookings.of(counter.people.accounts.find(address=address).id)) == 1
+
+
 def test_what_has_begun_or_is_off_offers_nothing_to_book(counter, planned):
     begun, off = planned(begins=datetime.now(UTC) - timedelta(minutes=1)), planned()
     counter.people.occasions.call_off("console", off)
@@ -323,7 +337,7 @@ def test_activities_are_listed_on_pages(tmp_path):
 
 @pytest.mark.parametrize("zone", ["Asia/Shanghai", "America/New_York"])
 def test_an_hour_is_kept_whatever_the_clock_it_was_given_by(people_of, zone):
-    at = datetime(2099, 1, 5, 14, 0, tzinfo=ZoneInfo(zone))
+    at = datetime(SOON.year + 2, 1, 5, 14, 0, tzinfo=ZoneInfo(zone))
     (key,) = people_of.occasions.plan("console", guided(at))
     assert people_of.occasions.of(key).plan.begins == at
     assert [one.id for one in people_of.occasions.between(at, at + timedelta(seconds=1))] == [key]

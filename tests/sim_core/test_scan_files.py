@@ -227,6 +227,17 @@ def test_a_glb_that_asks_for_another_file_is_refused(made, tmp_path):
     assert "'cloth.jpg'" in refused(path, tmp_path).what
 
 
+@pytest.mark.parametrize("stride", [0, 2, -12])
+def test_rows_that_overlap_are_refused(made, tmp_path, stride):
+    """A few bytes would be as many corners as a number can say."""
+
+    def crowd(document: dict) -> None:
+        corners = document["accessors"][document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+        document["bufferViews"][corners["bufferView"]]["byteStride"] = stride
+
+    assert "overlap" in refused(rewritten(write(made, "glb", tmp_path), crowd), tmp_path).what
+
+
 def test_nodes_turn_and_mirror(made, tmp_path):
     path = rewritten(
         write(made, "glb", tmp_path), lambda d: d["nodes"][0].update(scale=[-2, 2, 2], translation=[1, 0, 0])

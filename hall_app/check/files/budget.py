@@ -7,11 +7,12 @@ from pathlib import Path
 from hall_app.content.bakes.inputs import scan_files
 from hall_app.content.files import is_there, walk_files
 from hall_app.content.folder import Content
+from hall_app.content.models.accessors import MOST_TRIANGLES
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.problems import Problem
 
 MB = 1_000_000
-TRIANGLES = {"hall": 15_000, "close": 300_000}
+TRIANGLES = {"hall": 15_000, "close": MOST_TRIANGLES}
 BYTES = {"hall": 1.5 * MB, "close": 15 * MB}
 TEXTURE = 2048  # [pixels]
 FILE, FOLDER = 10 * MB, 60 * MB

@@ -8,6 +8,7 @@ from pathlib import Path
 from hall_app.content.bakes.store import bake_fault
 from hall_app.content.files import BAKED
 from hall_app.content.folder import Content, Exhibit
+from hall_app.content.models.accessors import MOST_TRIANGLES
 from hall_app.content.models.glb import GlbError, GlbInfo, read_glb
 from hall_app.content.problems import Problem
 
@@ -50,8 +51,9 @@ def _comparison_problems(exhibit: Exhibit, path: Path) -> list[Problem]:
 def _drawable(exhibit: Exhibit, key: str, path: Path, fix: str) -> GlbInfo | Problem:
     """What the model holds, or why it cannot be drawn."""
     try:
-        fault = _drawing_fault(path)
         info = read_glb(path)
+        # Of too many triangles the budget tells: a reader that takes them apart one by one is not asked.
+        fault = _drawing_fault(path) if info.triangles <= MOST_TRIANGLES else None
     except (GlbError, OSError) as error:
         fault, info = str(error), None
     if fault or info is None:

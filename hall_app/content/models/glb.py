@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from hall_app.content.models.accessors import see_that_it_is_held, whole
 from hall_app.content.models.pictures import PictureError, picture_size
 from sim_core.gltf import GlbError, GlbParts, glb_parts, node_matrix
 
 # The page has no decoder for these: it would look for one on the network, and the hall works without.
 REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
 TRIANGLES, STRIP, FAN = 4, 5, 6
-MOST = 2**32  # values one accessor can hold: their indices have 32 bits
 Corner = tuple[float, float, float]
 
 
@@ -41,6 +41,7 @@ def read_glb(path: Path) -> GlbInfo:
     try:
         extensions = _plain_extensions(document)
         _no_outside_files(document)
+        see_that_it_is_held(parts)
         triangles = _triangles(document)
         with np.errstate(all="ignore"):  # what is not finite is refused by name
             low, high = _bounds(document)
@@ -91,9 +92,7 @@ def _triangles(document: dict[str, Any]) -> int:
 
 def _drawn(document: dict[str, Any], primitive: dict[str, Any]) -> int:
     index = primitive.get("indices", primitive["attributes"]["POSITION"])
-    count = document["accessors"][index]["count"]
-    if not 0 <= count <= MOST:
-        raise ValueError("an accessor's count is out of range")
+    count = whole(document["accessors"][index]["count"])
     mode = primitive.get("mode", TRIANGLES)
     return count // 3 if mode == TRIANGLES else max(0, count - 2) if mode in (STRIP, FAN) else 0
 

@@ -137,6 +137,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "您已签到，不能再取消；如有误，请联系前台。",
         "You have been checked in, and this can no longer be cancelled: tell the desk if it is a mistake.",
     ),
+    "occasion-over": (
+        "此场已结束，预约不能再取消；如有误，请联系前台。",
+        "It is over, and a reservation can no longer be cancelled: tell the desk if it is a mistake.",
+    ),
     "occasion-slots": (
         "每段至少 5 分钟，一次最多 {most} 段。",
         "A slot has 5 minutes at least, and {most} slots are planned at once at most.",
@@ -164,6 +168,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
     "occasion-times": (
         "请按 2026-12-05T14:00 的形式填写时间，结束须晚于开始。",
         "Write times as 2026-12-05T14:00, with the end after the beginning.",
+    ),
+    "occasion-far": (
+        "时间须在 {first} 年至 {last} 年之间。",
+        "Give times in the years from {first} to {last}.",
     ),
     "occasion-past": (
         "{when} 已经过去，请填写将来的时间。",

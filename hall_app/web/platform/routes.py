@@ -10,6 +10,7 @@ from fastapi import FastAPI, Request
 
 from hall_app.house.house import House
 from hall_app.house.people import People
+from hall_app.web.answers.head import is_head
 from hall_app.web.answers.work import SLOW
 from hall_app.web.platform.counter import OFFICE, VISITOR, Counter, Pace
 from hall_app.web.platform.me import add_me
@@ -35,7 +36,7 @@ def add_platform(app: FastAPI, house: House, people: People) -> NoteLook:
 
     def note(request: Request, exhibit: str) -> None:
         """Beside the answer: nobody waits for it, and where it fails a visit is not kept."""
-        if request.cookies.get(VISITOR.name):
+        if request.cookies.get(VISITOR.name) and not is_head(request):
             SLOW.begin(("look", request.cookies[VISITOR.name], exhibit), lambda: _note(request, exhibit))
 
     def _note(request: Request, exhibit: str) -> None:

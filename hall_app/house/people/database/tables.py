@@ -55,6 +55,8 @@ user = Table(
     Column("authenticator", String(64)),  # the secret shared with an app; null: no second factor
     Column("step", Integer),  # the last half minute whose code was used: none is good twice
     Column("keeps_looks", Integer, nullable=False, server_default="0"),  # 1: asked that visits be kept
+    # The name as people are searched: SQLite's own `lower` knows A to Z, PostgreSQL's what its locale does, none ß.
+    Column("name_folded", Text, nullable=False, server_default=""),
 )
 
 role = Table(

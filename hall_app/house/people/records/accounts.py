@@ -89,7 +89,7 @@ class Accounts:
         """
         own = hashed is not None
         person, told = who if own else new_id(), checked_address(address)
-        row = {"address": told, "name": checked_name(name), "language": language, "password": hashed}
+        row = {"address": told, **checked_name(name), "language": language, "password": hashed}
         try:
             with self._ledger.change(who, "sign up" if own else "people", person) as connection:
                 connection.execute(tables.user.insert().values(id=person, made=now(), **row))
@@ -101,7 +101,7 @@ class Accounts:
 
     def set_profile(self, person: str, *, name: str, language: str) -> None:
         """Raises PeopleError."""
-        values = {"name": checked_name(name), "language": "en" if language == "en" else "zh"}
+        values = {**checked_name(name), "language": "en" if language == "en" else "zh"}
         with self._ledger.change(person, "profile", person) as connection:
             _set(connection, person, **values)
 

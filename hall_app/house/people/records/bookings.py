@@ -56,7 +56,7 @@ class Bookings:
         try:
             with self._ledger.change(person, "book", occasion) as connection:
                 row = _lock(connection, occasion, turn=True)
-                if row is None or row.cancelled is not None or in_utc(row.begins) <= now():
+                if row is None or not _is_to_come(row):
                     raise PeopleError("no-occasion")
                 _see_that_it_is_new(connection, person, occasion, key)
                 if not 1 <= size <= row.party:
@@ -69,8 +69,10 @@ class Bookings:
                 connection.execute(tables.booking.insert().values(**given, **new))
         except _KnownError:
             pass
-        (booking,) = (one for one in self.of(person) if one.occasion == occasion)
-        return booking
+        for booking in self.of(person):
+            if booking.occasion == occasion:
+                return booking
+        raise PeopleError("booking-cancelled")  # meanwhile, by another page of the same person or by the desk
 
     def of(self, person: str) -> tuple[Booking, ...]:
         """All of one person, the first made first."""
@@ -83,14 +85,20 @@ class Bookings:
     def cancel(self, who: str, act: str, booking: int, *, person: str = "", place: Place = ANYWHERE) -> None:
         """Give places back, to who waits. act: "cancel booking" of one's own (`person`), "reservations" of another's.
 
-        Raises PeopleError, also for one's own of which one was checked in: that somebody was there stays.
+        Raises PeopleError, also for one's own where one was checked in, or once all is over: who was there and who was
+        not stays.
         """
         table = tables.booking
         with self._ledger.change(who, act, f"booking {booking}") as connection:
             query = select(table.c.occasion).where(*_named(booking, place))
             query = query.where(table.c.user == person) if person else query
             occasion = connection.execute(query).scalar_one_or_none()
-            if occasion is None or not _give_back(connection, occasion, booking, arrived=not person):
+            row = None if occasion is None else _lock(connection, occasion)
+            if row is None:
+                raise PeopleError("no-booking")
+            if person and in_utc(row.ends) <= now():
+                raise PeopleError("occasion-over")
+            if not _give_back(connection, row.id, booking, arrived=not person):
                 there = connection.execute(query).one_or_none() is not None
                 raise PeopleError("arrived" if there else "no-booking")
 
@@ -135,10 +143,13 @@ class Bookings:
 
 
 def promote(connection: Connection, occasion: str) -> None:
-    """Give free places to who waits, strictly in order: a large party at the head is not passed by small ones."""
+    """Give free places to who waits, strictly in order: a large party at the head is not passed by small ones.
+
+    Of what was called off or has begun nobody gets any: he could not use it, and would be one who did not come.
+    """
     table = tables.booking
     row = _lock(connection, occasion)
-    if row is None:
+    if row is None or not _is_to_come(row):
         return
     free = row.places - row.taken
     for first in _waiting(connection, occasion):
@@ -169,6 +180,11 @@ def _lock(connection: Connection, occasion: str, *, turn: bool = False):
     table = tables.occasion
     row = update(table).where(table.c.id == occasion).values(turns=table.c.turns + int(turn))
     return connection.execute(row.returning(table)).one_or_none()
+
+
+def _is_to_come(row) -> bool:
+    """Whether the occasion of that row takes place, and has not begun."""
+    return row.cancelled is None and in_utc(row.begins) > now()
 
 
 def _waiting(connection: Connection, occasion: str):

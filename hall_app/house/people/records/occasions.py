@@ -18,6 +18,7 @@ from survey.store.database import in_utc, now
 __all__ = ["Occasion", "Occasions", "Plan"]
 
 MOST_PLACES, LONGEST_TITLE, LONGEST_TEXT = 1000, 120, 4000
+FIRST_YEAR, YEARS_AHEAD = 1970, 10  # at the ends of all time an hour of one zone is none in another
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,9 @@ class Plan:
             raise PeopleError("occasion-title")
         if not self.begins < self.ends:
             raise PeopleError("occasion-times")
+        last = now().year + YEARS_AHEAD
+        if not FIRST_YEAR <= self.begins.year <= self.ends.year <= last:
+            raise PeopleError("occasion-far", first=FIRST_YEAR, last=last)
         if not least <= self.places <= MOST_PLACES or not 1 <= self.party <= self.places:
             raise PeopleError("occasion-places", least=least)
         if (

@@ -52,18 +52,23 @@ class Person:
 
 def checked_address(text: str) -> str:
     """The address as it is compared and kept. Raises PeopleError."""
-    told = unicodedata.normalize("NFKC", text).strip().casefold()
+    told = _folded(text).strip()
     if len(told) > _LONGEST or not _ADDRESS.fullmatch(told) or not told.isprintable():
         raise PeopleError("address")
     return told
 
 
-def checked_name(text: str) -> str:
-    """Raises PeopleError."""
+def checked_name(text: str) -> dict[str, str]:
+    """The columns of a name: as it is shown, and as it is searched. Raises PeopleError."""
     told = unicodedata.normalize("NFC", text).strip()
     if len(told) > _NAME or not all(letter.isprintable() for letter in told):
         raise PeopleError("name", most=_NAME)
-    return told
+    return {"name": told, "name_folded": _folded(told)}
+
+
+def _folded(text: str) -> str:
+    """Alike for all ways to write the same letters, big or small. Databases have no such thing in common."""
+    return unicodedata.normalize("NFKC", text).casefold()
 
 
 def found_by(connection: Connection, **key: str) -> Person | None:
@@ -109,11 +114,13 @@ def how_many(connection: Connection, wanted: str) -> int:
 
 
 def _holds(wanted: str) -> ColumnElement[bool]:
-    user, part = tables.user, wanted.casefold()
+    user, part = tables.user, _folded(wanted)
     if not part:
         return true()
-    name = func.lower(user.c.name).contains(part, autoescape=True)
-    return user.c.address.contains(part, autoescape=True) | name
+    address, name = (
+        column.contains(part, autoescape=True) for column in (user.c.address, user.c.name_folded)
+    )
+    return address | name
 
 
 def see_that_one_is_left(connection: Connection) -> None:

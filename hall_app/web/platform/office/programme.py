@@ -331,7 +331,8 @@ def _plan(asking: Asking) -> Plan:
 
 
 def _to_come(plan: Plan) -> Plan:
-    """The plan. Raises PeopleError for what would have begun: nobody could book it."""
+    """The plan, as it is kept. Raises PeopleError, also for what would have begun: nobody could book it."""
+    plan = plan.checked()
     if plan.begins <= now():
         raise PeopleError("occasion-past", when=f"{plan.begins.astimezone():%Y-%m-%d %H:%M}")
     return plan

@@ -78,7 +78,8 @@ class OccasionPages:
                 why = (
                     f'<p class="refused" role="alert">{escape(asking.refusal)}</p>' if asking.refusal else ""
                 )
-                return f"{why}<p><b>{told_booking(asking, mine)}</b></p>{'' if mine.arrived else cancel}"
+                stays = mine.arrived or one.plan.ends <= now()
+                return f"{why}<p><b>{told_booking(asking, mine)}</b></p>{'' if stays else cancel}"
         if begun or one.cancelled:
             return f"<p>{closed}</p>" if closed else ""
         party = Field(
