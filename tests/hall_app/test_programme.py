@@ -181,6 +181,24 @@ def test_who_is_not_signed_in_books_nothing(counter, planned):
     assert activity in led.headers["Location"]
 
 
+def test_who_deletes_the_account_meanwhile_is_led_as_who_is_signed_out(counter, planned, monkeypatch):
+    activity = planned()
+    visitor, _ = member(counter)
+    page, bookings = visitor.get(f"/activities/{activity}?lang=en"), counter.people.bookings
+    book = bookings.book
+
+    def deleted(person: str, *given, **named):
+        counter.people.accounts.remove("console", person)
+        return book(person, *given, **named)
+
+    monkeypatch.setattr(bookings, "book", deleted)
+    led = visitor.post(f"/activities/{activity}/book", page.form("form-book"))
+    assert led.status == 303
+    assert led.headers["Location"].startswith("/me?")
+    assert activity in led.headers["Location"]
+    assert counter.people.occasions.of(activity).taken == 0
+
+
 def test_a_calendar_takes_it_over(counter, planned):
     activity = planned()
     for path in (f"/activities/{activity}.ics?lang=en", "/activities.ics?lang=en"):
