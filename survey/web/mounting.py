@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError
-from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder, submission_id
+from survey.questionnaire import Language, Offers, Questionnaire, QuestionnaireFolder, submission_id
 from survey.store import PATIENCE as ERASED_WITHIN
 from survey.store import Given, Store
 from survey.web.privacy import Record, Running, read_controller, record_of
@@ -172,18 +172,25 @@ class Mounted:
         wait([gone], ERASED_WITHIN)
         return gone.done() and gone.result()
 
-    def made(self, key: str, task: str, settings: Mapping[str, Any] | None = None) -> tuple[str, bytes]:
+    def made(self, key: str, task: str, language: Language | None = None) -> tuple[str, bytes]:
         """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a questionnaire as it is now:
         the file's name and what it holds, made by a process of its own and noted in the survey's journal.
 
-        settings: of an analysis, as the API takes it. Raises AnswerError, StoreError.
+        language: in which an analysis tells its warnings as well: its "remarks", one for each of its "warnings".
+        Raises AnswerError, StoreError.
         """
         from survey.export import file_name
         from survey.web.api import Wanted, find_questionnaire
 
         asked = find_questionnaire(Published(self.questionnaires, self.store), key)
-        told = Wanted.model_validate({}).model_dump() | dict(settings or {})
-        job = {"task": task, "questionnaire": asked.document(), "k": None, "settings": told}
+        usual = Wanted.model_validate({}).model_dump()
+        job = {
+            "task": task,
+            "questionnaire": asked.document(),
+            "k": None,
+            "settings": usual,
+            "language": language,
+        }
         data = self.jobs.made(job)
         self.store.audit.note("export", f"{asked.id} version {asked.version} {task}, office")
         return file_name(task, asked) if task != "analysis" else f"{key}-analysis.json", data

@@ -89,7 +89,9 @@ class Publication:
                     return
             try:
                 found = self._examination.problems(files) or self._examination.reach(files, wait=True) or []
-            except FileNotFoundError:  # of the shelf: the draft was saved again or dropped, which `asked` tells
+            except (
+                FileNotFoundError
+            ):  # of the shelf: the draft was saved again or dropped, which `asked` tells
                 found = [UNWALKED]
 
     def _put(self, who: str, act: str, exhibit: str, files: _Pairs) -> None:
