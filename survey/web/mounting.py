@@ -132,6 +132,12 @@ class Mounted:
 
         self.store.withdrawn = lambda code: act(pseudonym(code))
 
+    def withdrawn(self) -> frozenset[str]:
+        """The pseudonyms of all answers that were withdrawn or purged. Raises StoreError."""
+        from survey.export import pseudonym
+
+        return frozenset(map(pseudonym, self.store.tombstones()))
+
     def standing(self) -> list[dict[str, Any]]:
         """Every questionnaire with its versions that have answers: id, title, version, asked (whether it asks anything
         here), items, answers of this version, versions {number: answers}. Raises StoreError.
