@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 # All that costs time to import is imported where it is needed, after the process has made way for others.
 if TYPE_CHECKING:
     from survey.export import Sheet
-    from survey.questionnaire import Questionnaire
+    from survey.questionnaire import Language, Questionnaire
     from survey.store.answers import Archive
 
 __all__ = ["HEADER", "NICE", "main"]
@@ -67,7 +67,7 @@ def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
     archive = Archive(Path(job["data"]) if "data" in job else job["db"])
     asked, task = Questionnaire.model_validate(job["questionnaire"]), job["task"]
     if task == "analysis":
-        found = _analysed(asked, archive, job["settings"])
+        found = _analysed(asked, archive, job["settings"], job.get("language"))
         out.write(json.dumps(found, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode())
         return {}
     from survey.errors import AnswerError
@@ -92,7 +92,10 @@ def _put(task: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
         put(task, sheet, out, folder)
 
 
-def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) -> dict[str, Any]:
+def _analysed(
+    whole: Questionnaire, archive: Archive, wanted: dict[str, Any], language: Language | None
+) -> dict[str, Any]:
+    """language: in which its warnings are told as well, under "remarks"; None: in none."""
     from survey.analysis import AnalysisError, analyse
     from survey.analysis.procedure import Settings, summary
     from survey.errors import AnswerError
@@ -111,12 +114,16 @@ def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) ->
         reverse=reverse_keyed(wanted["reverse"], table),
     )
     try:
-        return summary(
-            analyse(table.scores, table.items, settings=settings, context=context_of(table, whole.points))
-        )
+        found = analyse(table.scores, table.items, settings=settings, context=context_of(table, whole.points))
     except AnalysisError as error:
         problem, _, remedy = str(error).partition(" – ")
         raise AnswerError(error.code, problem, remedy or "see survey/README.md") from None
+    if language is None:
+        return summary(found)
+    from survey.report import Words
+
+    say = Words(language, whole, found.turned.items)
+    return summary(found) | {"remarks": [say.remark(note) for note in found.notes]}
 
 
 if __name__ == "__main__":

@@ -145,6 +145,13 @@ class Store:
         with self._read() as connection:
             return connection.execute(select(table.c.id).where(table.c.id == submission)).first() is not None
 
+    def tombstones(self) -> tuple[str, ...]:
+        """The ids of all answers that were withdrawn or purged."""
+        table = tables.submission
+        with self._read() as connection:
+            query = select(table.c.id).where(table.c.withdrawn.is_not(None))
+            return tuple(connection.execute(query).scalars())
+
     def asked_of(self, questionnaire: str, submission: str) -> Questionnaire | None:
         """What was asked when the answer with this id was given; None: no such answer.
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError
-from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder, submission_id
+from survey.questionnaire import Language, Offers, Questionnaire, QuestionnaireFolder, submission_id
 from survey.store import PATIENCE as ERASED_WITHIN
 from survey.store import Given, Store
 from survey.web.privacy import Record, Running, read_controller, record_of
@@ -133,6 +133,12 @@ class Mounted:
 
         self.store.withdrawn = lambda code: act(pseudonym(code))
 
+    def withdrawn(self) -> frozenset[str]:
+        """The pseudonyms of all answers that were withdrawn or purged. Raises StoreError."""
+        from survey.export import pseudonym
+
+        return frozenset(map(pseudonym, self.store.tombstones()))
+
     def standing(self) -> list[dict[str, Any]]:
         """Every questionnaire with its versions that have answers: id, title, version, asked (whether it asks anything
         here), items, answers of this version, versions {number: answers}. One that has left the hall is told by its
@@ -176,20 +182,27 @@ class Mounted:
         return gone.done() and gone.result()
 
     def made(
-        self, key: str, task: str, version: int | None = None, settings: Mapping[str, Any] | None = None
+        self, key: str, task: str, version: int | None = None, language: Language | None = None
     ) -> tuple[str, bytes]:
         """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a version of a questionnaire,
         the current one where None: the file's name and what it holds, made by a process of its own and noted in the
         survey's journal.
 
-        settings: of an analysis, as the API takes it. Raises AnswerError, StoreError.
+        language: in which an analysis tells its warnings as well: its "remarks", one for each of its "warnings".
+        Raises AnswerError, StoreError.
         """
         from survey.export import file_name
         from survey.web.api import Wanted, find_version
 
         asked = find_version(Published(self.questionnaires, self.store), self.store, key, version)
-        told = Wanted.model_validate({}).model_dump() | dict(settings or {})
-        job = {"task": task, "questionnaire": asked.document(), "k": None, "settings": told}
+        usual = Wanted.model_validate({}).model_dump()
+        job = {
+            "task": task,
+            "questionnaire": asked.document(),
+            "k": None,
+            "settings": usual,
+            "language": language,
+        }
         data = self.jobs.made(job)
         self.store.audit.note("export", f"{asked.id} version {asked.version} {task}, office")
         return file_name(task, asked) if task != "analysis" else f"{key}-analysis.json", data

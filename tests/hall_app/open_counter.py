@@ -91,12 +91,12 @@ def open_counter(
         people.close()
 
 
-def answered(counter: OpenCounter, score: int = 4) -> str:
-    """Somebody has sent the questionnaire, with a suggestion; the code he got."""
+def answered(counter: OpenCounter, scores: dict[str, int] | None = None) -> str:
+    """Somebody has sent the questionnaire, with a suggestion; the code he got. scores: else 4 for each item."""
     code, visitor = str(uuid.uuid4()), Visitor(counter.url)
     told = {"id": code, "version": ASKED.version, "language": "zh", "consent": True}
     module = next(one.id for one in ASKED.modules if one.suggestion)
-    told |= {"scores": dict.fromkeys(ASKED.item_ids, score), "suggestions": {module: SAID}}
+    told |= {"scores": scores or dict.fromkeys(ASKED.item_ids, 4), "suggestions": {module: SAID}}
     sent = visitor.ask(
         "POST",
         f"/api/v1/questionnaires/{ASKED.id}/submissions",

@@ -59,7 +59,19 @@ TELLERS: Mapping[tuple[str, str], Sequence[int] | None] = {
 }
 
 # These are given what is wrong and its remedy in one, and whoever catches them parts it there; ValueError in CHECKED.
-PARTED = {"ArchiveError": " – ", "MissingFontError": " – ", "ValueError": "; "}
+_FAILURES = (
+    *(
+        "AllEqual",
+        "ConstantItem",
+        "CrossCheckFailed",
+        "DependentItems",
+        "LoneItem",
+        "NoComponents",
+        "NotConverged",
+    ),
+    *("NotFinite", "NotPositiveDefinite", "TooFewItems", "TooFewRows", "UnknownItem", "WrongShape"),
+)  # of an analysis
+PARTED = dict.fromkeys(("ArchiveError", "MissingFontError", *_FAILURES), " – ") | {"ValueError": "; "}
 CHECKED = "survey/questionnaire/definition.py"
 
 # Tables of texts, also in functions: all strings that are their values.
@@ -106,7 +118,6 @@ PASSED_ON = {
     ("hall_app/web/platform/office/backups.py", "remove_house"),  # of the system
     ("hall_app/web/platform/office/backups.py", "restore"),
     ("hall_app/web/platform/office/collection/desk.py", "_write"),  # of the system
-    ("hall_app/web/platform/office/questionnaires.py", "_made"),  # of the survey's answers
     ("sim_core/mesh/scan/files/glb.py", "_refuse"),  # of PACKED
     ("sim_core/mesh/scan/files/glb.py", "read_glb_scan"),  # of a GlbError
     ("survey/questionnaire/files.py", "problem_of"),  # of pydantic
@@ -157,6 +168,8 @@ def _of_module(module: _Module) -> Iterator[Said]:
                 if node.func.id != "ValueError" or module.name == CHECKED:
                     for one in scope.told(node.args[0], function):
                         parts = (one.text or "").split(PARTED[node.func.id])
+                        if node.func.id in _FAILURES:  # after the names of items, however many
+                            parts = [part.removeprefix(f"{GAP}: ") for part in parts]
                         yield from (replace(one, text=part) for part in parts)
             if teller != () and isinstance(node, ast.Return | ast.Yield) and node.value is not None:
                 yield from scope.handed(node.value, teller, function)

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
@@ -21,7 +22,7 @@ from sqlalchemy import update
 
 from hall_app.house.people import People, PeopleError
 from hall_app.house.people.database import Ledger, tables
-from hall_app.house.people.records import Plan
+from hall_app.house.people.records import Plan, accounts
 
 PASSWORD = "a robe of blue ramie"
 ASKED, PLACES = 200, 20
@@ -336,6 +337,57 @@ def test_a_deleted_account_leaves_its_places_to_who_waits(people):
     people.accounts.delete(leaving, PASSWORD)
     (left,) = people.bookings.for_occasion(occasion)
     assert (left.person, left.place) == (waiting, 0)
+
+
+@pytest.mark.parametrize("how", ["delete", "remove"])
+def test_who_books_while_his_account_is_deleted_is_refused(people, database, monkeypatch, how):
+    """At once, in two houses that share the database: the one that deletes has given all places back already."""
+    occasion, other, beside = planned(people), planned(people), People(database)
+    leaving = people.accounts.sign_up("leaving@example.org", PASSWORD)
+    people.bookings.book(leaving.id, other, 1, "first")
+    release = accounts.release
+    with ThreadPoolExecutor(1) as pool:
+        asked = []
+
+        def released(connection, person: str) -> None:
+            release(connection, person)
+            asked.append(pool.submit(beside.bookings.book, person, occasion, 1, "second"))
+            time.sleep(0.3)
+
+        monkeypatch.setattr(accounts, "release", released)
+        if how == "delete":
+            people.accounts.delete(leaving, PASSWORD)
+        else:
+            people.accounts.remove("console", leaving.id)
+        with refused("no-account"):
+            asked[0].result()
+    assert [people.bookings.for_occasion(one) for one in (occasion, other)] == [(), ()]
+    assert people.occasions.of(occasion).taken == 0
+    beside.close()
+
+
+def test_who_cancels_while_his_account_is_deleted_is_told_so(people, database, monkeypatch):
+    """Neither waits for the other: what either holds is held in the same order."""
+    occasion, beside = planned(people), People(database)
+    leaving = people.accounts.sign_up("leaving@example.org", PASSWORD)
+    mine = people.bookings.book(leaving.id, occasion, 1, "first")
+    release = accounts.release
+    with ThreadPoolExecutor(1) as pool:
+        asked = []
+
+        def released(connection, person: str) -> None:
+            asked.append(
+                pool.submit(beside.bookings.cancel, person, "cancel booking", mine.id, person=person)
+            )
+            time.sleep(0.3)
+            release(connection, person)
+
+        monkeypatch.setattr(accounts, "release", released)
+        people.accounts.delete(leaving, PASSWORD)
+        with refused("no-booking"):
+            asked[0].result()
+    assert people.bookings.for_occasion(occasion) == ()
+    beside.close()
 
 
 def test_a_number_that_was_given_again_is_not_taken_for_who_had_it_before(people):

@@ -18,6 +18,8 @@ from open_counter import ASKED, SAID, answered
 
 from hall_app.house.people import People, Role
 from hall_app.house.people.records import Plan
+from hall_app.web.platform import follow_withdrawals
+from survey.errors import StoreError
 from survey.export import pseudonym
 
 NUMBERS = itertools.count()
@@ -506,7 +508,10 @@ def questions(counter):
 def test_what_was_answered_stays_in_reach_under_a_new_version_and_without_its_file(
     counter, people, questions
 ):
-    one, (code, _) = clerk(counter, people, Role.RESEARCHER), (answered(counter), answered(counter, 2))
+    one, (code, _) = (
+        clerk(counter, people, Role.RESEARCHER),
+        (answered(counter), answered(counter, dict.fromkeys(ASKED.item_ids, 2))),
+    )
     mine, at = f"{pseudonym(code)}.", f"questionnaires/{ASKED.id}"
     newer = ASKED.version + 1
     raised = questions.read_text("utf-8").replace(f"\nversion = {ASKED.version}\n", f"\nversion = {newer}\n")
@@ -567,4 +572,46 @@ def test_a_suggestion_is_followed_up_and_tells_no_withdrawal_code(counter, peopl
     kept = set(people.followups.all())
     assert withdrawn not in kept, "what was noted of a withdrawn answer goes with it"
     assert left in kept
+    subjects = [entry.subject for entry in people.journal.entries() if entry.act == "answers"]
+    assert not [told for told in subjects if told.endswith("withdrawn")], "nor is it told when that was"
     assert withdrawn not in {said["id"] for said in one.told("suggestions")}
+
+
+@pytest.mark.parametrize("next_time", ["listed", "opened"])
+def test_what_was_noted_of_a_withdrawn_answer_goes_also_where_the_store_failed_then(
+    counter, people, monkeypatch, next_time
+):
+    one = clerk(counter, people, Role.RESEARCHER)
+    withdrawn, left = answered(counter), answered(counter)
+    for said in one.told("suggestions"):
+        if said["id"].startswith((pseudonym(withdrawn), pseudonym(left))):
+            one.told(f"suggestions/{said['id']}", {"state": "done", "note": "Longer by 2 cm"})
+
+    def noted() -> set[str]:
+        return {key.partition(".")[0] for key in people.followups.all()} & {
+            *map(pseudonym, (withdrawn, left))
+        }
+
+    def fails(answer: str) -> None:
+        raise StoreError("locked")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(people.followups, "forget", fails)
+        gone = one.ask("DELETE", f"/api/v1/questionnaires/{ASKED.id}/submissions/{withdrawn}")
+        assert gone.status in (202, 204), "it is withdrawn all the same"
+    assert noted() == {pseudonym(withdrawn), pseudonym(left)}
+    if next_time == "opened":
+        follow_withdrawals(counter.survey, people)
+    else:
+        one.told("suggestions")
+    assert noted() == {pseudonym(left)}
+
+
+def test_what_was_noted_of_answers_that_are_listed_no_more_stays(counter, people, monkeypatch):
+    """Their questionnaire has another version by now, say, or its file is gone for a while."""
+    one, code = clerk(counter, people, Role.RESEARCHER), answered(counter)
+    (said,) = [said for said in one.told("suggestions") if said["id"].startswith(pseudonym(code))]
+    one.told(f"suggestions/{said['id']}", {"state": "done"})
+    monkeypatch.setattr(counter.house, "survey_suggestions", tuple)
+    assert one.told("suggestions") == []
+    assert said["id"] in people.followups.all()

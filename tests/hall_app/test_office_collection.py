@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import io
 import json
+import shutil
 import tomllib
 import uuid
 from concurrent.futures import ThreadPoolExecutor
@@ -37,8 +38,6 @@ def chest(counter):
     place = EXHIBIT.replace("x = 0.0", "x = 0.0 # by hand").replace("z = -1.0", "z = 2.0")
     home = add_exhibit(counter.content, key, "# The chest. 箱\n" + place)
     yield home
-    import shutil
-
     shutil.rmtree(home, ignore_errors=True)
 
 
@@ -341,6 +340,96 @@ def test_what_changed_since_it_was_looked_at_is_not_published(counter, curator, 
     assert ((chest / "text.en.md").read_text("utf-8") if before is not None else None) == before
     assert curator.send(f"/office/collection/{key}/preview?lang=en", "form-publish").status == 200
     assert "As nobody else did." in (chest / "text.en.md").read_text("utf-8")
+
+
+@pytest.fixture
+def meanwhile(monkeypatch):
+    """A function that has `act` done while the first draft from now on is checked, by somebody else; what came of it.
+
+    first: before its ways are walked, else after that. Who checks waits for it, ten seconds at most: nobody may have to
+    wait for the check.
+    """
+
+    def during(act, *, first=False):
+        reach, done = Examination.reach, []
+
+        def do() -> None:
+            done.append(None)
+            done[0] = pool.submit(act).result(10)
+
+        def checked(examination, files, *, wait):
+            if first and not done:
+                do()
+            found = reach(examination, files, wait=wait)
+            if not done:
+                do()
+            return found
+
+        monkeypatch.setattr(Examination, "reach", checked)
+        return done
+
+    with ThreadPoolExecutor(1) as pool:
+        yield during
+
+
+def test_a_draft_is_saved_while_another_is_checked(counter, curator, chest, meanwhile):
+    key, editor = chest.name, clerk(counter, counter.people, Role.EDITOR)
+    curator.told(f"collection/{key}/fields", {"title.en": "Checked"})
+    done = meanwhile(lambda: editor.told("collection/chest/fields", {"title.en": "Saved meanwhile"}))
+    publish(curator, key)
+    assert done == [{"id": "chest", "changed": ["title"]}]
+    assert "Checked" in (chest / TOML).read_text("utf-8")
+    editor.drop("chest")
+
+
+@pytest.mark.parametrize("seen", [True, False])
+def test_what_changes_while_it_is_checked_is_not_published(counter, curator, chest, meanwhile, seen):
+    key, editor, before = chest.name, clerk(counter, counter.people, Role.EDITOR), (chest / TOML).read_bytes()
+    curator.told(f"collection/{key}/fields", {"title.en": "Checked"})
+    told = {"seen": curator.told(f"collection/{key}")["mark"]} if seen else {}
+    meanwhile(lambda: editor.told(f"collection/{key}/fields", {"title.en": "Saved meanwhile"}))
+    answer = curator.api(f"collection/{key}/publish", told)
+    assert answer.status == 409
+    assert json.loads(answer.body)["error"] == "draft-changed"
+    assert (chest / TOML).read_bytes() == before
+    publish(curator, key)
+    assert "Saved meanwhile" in (chest / TOML).read_text("utf-8")
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_draft_that_is_dropped_while_it_is_checked_is_not_published(curator, chest, meanwhile, first):
+    """Its files are gone, before they are looked at or after."""
+    key, before = chest.name, (chest / TOML).read_bytes()
+    curator.told(f"collection/{key}/fields", {"title.en": "Checked"})
+    meanwhile(lambda: curator.drop(key), first=first)
+    assert curator.api(f"collection/{key}/publish", {}).status == 404
+    assert (chest / TOML).read_bytes() == before
+
+
+@pytest.mark.parametrize("deed", ["publish", "undo"])
+def test_a_hall_that_changes_while_a_draft_is_checked_is_checked_with_it(
+    counter, curator, chest, meanwhile, deed
+):
+    """Each is good by itself, and the two stand in each other."""
+    key, before, wall = chest.name, (chest / TOML).read_bytes(), {"place.x": "2.5"}
+    other = add_exhibit(counter.content, f"{key}-2", EXHIBIT.replace("x = 0.0", "x = -2.5"))
+    try:
+        curator.told(f"collection/{key}/fields", wall)
+        given = {}
+        if deed == "undo":
+            publish(curator, key)
+            curator.told(f"collection/{key}/fields", {"place.x": "0"})
+            publish(curator, key)
+            given = {"revision": curator.told(f"collection/{key}/history")[0]["id"]}
+            before = (chest / TOML).read_bytes()
+        text = (other / TOML).read_text("utf-8").replace("x = -2.5", "x = 2.5").replace("z = -1.0", "z = 2.0")
+        meanwhile(lambda: (other / TOML).write_text(text, "utf-8"))
+        answer = curator.api(f"collection/{key}/{deed}", given)
+    finally:
+        shutil.rmtree(other)
+    assert answer.status == 400
+    assert json.loads(answer.body)["error"] == "content-check"
+    assert (chest / TOML).read_bytes() == before
 
 
 def test_the_plan_names_what_stands_there_in_the_language_of_the_page(counter, curator, chest, monkeypatch):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 import re
 import shlex
 from html import unescape
@@ -13,7 +14,7 @@ import event_loop
 import pytest
 from office_clerk import clerk
 from office_stock import Slow
-from open_counter import answered, open_counter
+from open_counter import ASKED, answered, open_counter
 
 from hall_app.content import load
 from hall_app.house.baking import ROOM, Bake, BakingQueue
@@ -206,6 +207,40 @@ def test_who_asks_only_whether_it_is_there_leaves_no_row(tmp_path, quick_hashes)
             len(noted) + 2,
         )
         assert one.ask("HEAD", "/office").status == one.ask("HEAD", "/me").status == 200
+
+
+@pytest.mark.parametrize(
+    ("answers", "codes"),
+    [
+        (0, None),
+        (6, {"constant_item", "too_few_rows"}),
+        (len(ASKED.item_ids) + 8, {"constant_item", "dependent_items"}),
+    ],
+)
+def test_what_an_analysis_warns_of_is_told_in_the_language_of_the_page(unasked, answers, codes):
+    """Also why a step failed, and why there is no analysis. Programs are told what they always were."""
+    one, draw = clerk(unasked, unasked.people, Role.RESEARCHER), random.Random(7)
+    first, second, third, *_ = ASKED.item_ids
+    for _ in range(answers):
+        scores = {item: draw.randint(1, 5) for item in ASKED.item_ids}
+        answered(
+            unasked, scores=scores | {first: 4, second: scores[third]}
+        )  # all judge alike, two say the same
+    pages = {}
+    for lang in ("zh", "en"):
+        page = one.get(f"/office/questionnaires/garment/analysis?lang={lang}")
+        assert page.status == (200 if answers else 400)
+        (listed,) = re.findall(r'<(?:ul class="names"|p class="refused").*?</(?:ul|p)>', page.text, re.DOTALL)
+        pages[lang] = unescape(re.sub("<[^>]+>", "\n", listed))
+    names = "|".join((*ASKED.item_ids, "KMO|Bartlett|Kaiser|MAP|HTTP", r"(--)?reverse\b( = true)?"))
+    assert not re.search("[A-Za-z]{2,}", re.sub(names, "", pages["zh"])), pages["zh"]
+    assert not re.search(r"[\u4e00-\u9fff]", pages["en"]), pages["en"]
+    if codes:
+        analysed, label = one.told("questionnaires/garment/analysis"), ASKED.items[0].label
+        assert label.zh in pages["zh"]
+        assert label.en in pages["en"]
+        assert codes <= {warning["code"] for warning in analysed["warnings"]}
+        assert "remarks" not in analysed
 
 
 def test_a_bake_is_told_stopped_and_tried_again(counter):

@@ -795,6 +795,36 @@ def test_looks_leave_the_journal_of_a_house_of_an_older_schema(database, ledger)
     again.close()
 
 
+def test_withdrawals_leave_the_journal_of_a_house_of_an_older_schema(database, ledger):
+    with ledger.change("", "answers", "a1.culture withdrawn") as connection:
+        space = "" if ledger_is_sqlite(ledger) else "people."
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0008'"))
+    again = People(database)
+    again.followups.set("console", "a1.culture", "done", "")
+    assert [entry.subject for entry in again.journal.entries()] == ["a1.culture done"]
+    again.close()
+
+
+def test_what_was_noted_of_a_withdrawn_answer_is_in_no_table_and_no_file(people, ledger, database):
+    """However often it was written anew; when it went is in no journal either."""
+    for number in range(200):
+        people.followups.set(
+            "console", f"a{number}.culture", "done", f"note {number} " + "larger letters " * 20
+        )
+    for state in ("open", "answered", "done"):
+        people.followups.set("console", "a7.fabric", state, f"as he said: wider sleeves, {state} " * 8)
+    before = people.journal.entries()
+    people.followups.forget("a7")
+    assert people.journal.entries() == before
+    assert len(people.followups.all()) == 199
+    assert "wider sleeves" not in everything(ledger)
+    if isinstance(database, Path):
+        files = b"".join(file.read_bytes() for file in database.iterdir())
+        assert b"note 8 " in files
+        assert b"note 7 " not in files
+        assert b"wider sleeves" not in files
+
+
 def test_answers_and_people_in_one_postgres_database_do_not_meet(postgres):
     from survey.store import Store
 

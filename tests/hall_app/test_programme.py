@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import re
+import time
 import zipfile
 from datetime import UTC, datetime, timedelta
 from html import unescape
@@ -64,6 +65,66 @@ def test_what_is_not_planned_is_not_found(counter, path, lang, title):
     assert told.status == 404
     assert f"<h1>{title}</h1>" in told.text
     assert f'href="/{path.split("/")[1]}?lang={lang}"' in told.text, "and the way to what there is"
+
+
+@pytest.fixture
+def house_stands_in(monkeypatch):
+    """A function that sets the zone whose clock the house goes by."""
+
+    def stands(zone: str) -> None:
+        monkeypatch.setenv("TZ", zone)
+        time.tzset()
+
+    yield stands
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.mark.parametrize(
+    ("zone", "told"),
+    [("Asia/Shanghai", "UTC+8"), ("Asia/Kolkata", "UTC+5:30"), ("Etc/GMT+3", "UTC−3"), ("UTC", "UTC")],
+)
+def test_pages_that_tell_hours_say_once_by_which_clock(counter, planned, house_stands_in, zone, told):
+    house_stands_in(zone)
+    activity, visit = planned(), planned(kind="visit")
+    visitor, _ = member(counter)
+    keeper = clerk(counter, counter.people, Role.ADMINISTRATOR)
+    keeper.told("tokens", {"label": "for the paper"})
+    pages = [
+        (visitor, way)
+        for way in ("/activities", f"/activities/{activity}", "/visit", f"/visit/{visit}", "/me")
+    ]
+    office = ("events", f"events/{activity}", f"day?day={SOON.astimezone():%Y-%m-%d}", "audit", "tokens")
+    for who, way in (*pages, *((keeper, f"/office/{way}") for way in office)):
+        for lang, line in (
+            ("zh", f"时间为本馆当地时间（现为 {told}）。"),
+            ("en", f"All times are the house's local time (at present {told})."),
+        ):
+            page = who.get(f"{way}{'&' if '?' in way else '?'}lang={lang}").text
+            assert unescape(page).count(line) == 1, way
+            assert page.count("UTC") == 1, "and beside no hour, where all have the same"
+            for at, words in re.findall(r'<time datetime="([^"]+)">([^<]+)</time>', page):
+                assert words.endswith(at[11:16])
+                assert datetime.fromisoformat(at).utcoffset() == datetime.now().astimezone().utcoffset()
+    for who, way in ((visitor, "/me/privacy"), (keeper, "/office"), (keeper, "/office/people")):
+        assert "UTC" not in who.get(f"{way}?lang=en").text, "where no hour is told"
+
+
+@pytest.mark.parametrize("month", [1, 7])
+def test_an_hour_of_another_season_says_its_own_offset(counter, planned, house_stands_in, month):
+    house_stands_in("Europe/Berlin")
+    begins = datetime(2099, month, 5, 14, 0).astimezone()
+    key = planned(kind="visit", begins=begins, ends=begins + timedelta(hours=1))
+    summer = month == 7
+    same = datetime.now().astimezone().utcoffset() == timedelta(hours=1 + summer)
+    for lang, beside in (("zh", f"（UTC+{1 + summer}）"), ("en", f" (UTC+{1 + summer})")):
+        end = "" if same else beside
+        for way, told in (
+            (f"/visit/{key}?", "14:00</time>"),
+            (f"/visit?month=2099-{month:02}&", "15:00</time>"),
+        ):
+            page = Visitor(counter.url).get(f"{way}lang={lang}").text
+            assert f"{told}{end}<" in page
 
 
 def test_places_are_booked_waited_for_and_given_back(counter, planned):
@@ -193,6 +254,24 @@ def test_who_is_not_signed_in_books_nothing(counter, planned):
     led = visitor.post(f"/activities/{activity}/book", given | {"seal": seal})
     assert led.headers["Location"].startswith("/me?")
     assert activity in led.headers["Location"]
+
+
+def test_who_deletes_the_account_meanwhile_is_led_as_who_is_signed_out(counter, planned, monkeypatch):
+    activity = planned()
+    visitor, _ = member(counter)
+    page, bookings = visitor.get(f"/activities/{activity}?lang=en"), counter.people.bookings
+    book = bookings.book
+
+    def deleted(person: str, *given, **named):
+        counter.people.accounts.remove("console", person)
+        return book(person, *given, **named)
+
+    monkeypatch.setattr(bookings, "book", deleted)
+    led = visitor.post(f"/activities/{activity}/book", page.form("form-book"))
+    assert led.status == 303
+    assert led.headers["Location"].startswith("/me?")
+    assert activity in led.headers["Location"]
+    assert counter.people.occasions.of(activity).taken == 0
 
 
 def test_a_calendar_takes_it_over(counter, planned):

@@ -95,15 +95,19 @@ def test_frozen_answers_cannot_be_withdrawn_and_later_ones_can(store):
 def test_what_is_withdrawn_stays_a_tombstone_without_answers(store, tmp_path):
     answer = an_answer(suggestions={"fabric": "gone"}, exhibit="pibo")
     store.submit(GARMENT, answer)
+    store.submit(GARMENT, an_answer())
+    assert store.tombstones() == ()
     assert store.withdraw("garment", answer.id)
+    assert store.tombstones() == (answer.id,)
     with pytest.raises(AnswerError) as refused:
         store.submit(GARMENT, answer)
     assert refused.value.status == 410
     with closing(sqlite3.connect(tmp_path / "survey.sqlite")) as database:
-        ((digest, exhibit),) = database.execute("SELECT digest, exhibit FROM submission").fetchall()
-        assert (digest, exhibit) == ("", None)
+        row = database.execute("SELECT digest, exhibit FROM submission WHERE id = ?", (answer.id,)).fetchone()
+        assert row == ("", None)
         for table in ("answer", "suggestion"):
-            assert database.execute(f"SELECT count(*) FROM {table}").fetchone() == (0,)
+            left = f"SELECT count(*) FROM {table} WHERE submission = ?"
+            assert database.execute(left, (answer.id,)).fetchone() == (0,)
 
 
 @pytest.mark.slow

@@ -15,10 +15,10 @@ from hall_app.content.loading import load
 from hall_app.content.problems import ContentError, Problem
 from hall_app.house.beside import beside
 
-__all__ = ["Examination"]
+__all__ = ["UNWALKED", "Examination"]
 
 _KEPT = 24  # findings that are remembered
-_UNWALKED = Problem(
+UNWALKED = Problem(
     "plan.toml", "", "the ways through the hall could not be walked", "try again, or run hall check"
 )
 
@@ -47,19 +47,19 @@ class Examination:
         A walk that came to nothing is told as a problem, and begun anew when it is asked for again.
         """
         with self._lock:
-            key = ("reach", *self._state(files))
+            key = ("reach", *self.state(files))
             walk = self._walks.get(key)
             if walk is None:
                 self._forget(self._walks)
                 walk = self._walks[key] = _Walk(self._content, files)
         found = walk.found(wait=wait)
-        if found == [_UNWALKED]:
+        if found == [UNWALKED]:
             with self._lock:
                 self._walks.pop(key, None)
         return found
 
     def _quick(self, files: Changed) -> list[Problem]:
-        key = self._state(files)
+        key = self.state(files)
         if key not in self._found:
             if files:
                 with likeness_of(self._content, files) as whole:
@@ -71,7 +71,8 @@ class Examination:
                 self._found[key] = found
         return self._found[key]
 
-    def _state(self, files: Changed) -> tuple[object, ...]:
+    def state(self, files: Changed) -> tuple[object, ...]:
+        """A name for these files in the hall as it is now: what was found of them holds while it is the same."""
         told = ((name, _digest(data)) for name, data in sorted(files.items()))
         return (revision(self._content), *told)
 
@@ -85,7 +86,7 @@ class _Walk:
     """One walk through a hall as it would be, in a process of its own that ends with the server."""
 
     def __init__(self, content: Path, files: Changed) -> None:
-        self._problems = [_UNWALKED]
+        self._problems = [UNWALKED]
         self._thread = threading.Thread(target=self._walk, args=(content, dict(files)), daemon=True)
         self._thread.start()
 

@@ -48,10 +48,12 @@ def add_platform(app: FastAPI, house: House, people: People) -> NoteLook:
 
 
 def follow_withdrawals(survey: Mounted, people: People) -> None:
-    """With an answer goes what the office noted of its suggestions."""
+    """With an answer goes what the office noted of its suggestions; what is left of one goes now."""
 
     def withdrawn(answer: str) -> None:
-        with suppress(StoreError):  # it is withdrawn all the same
+        with suppress(StoreError):  # it is withdrawn all the same, and the next who looks forgets the note
             people.followups.forget(answer)
 
     survey.when_withdrawn(withdrawn)
+    with suppress(StoreError):
+        people.followups.forget_all(survey.withdrawn)

@@ -1,7 +1,7 @@
 """The one way to change anything about people: what is done is written down in the same transaction, or not done.
 
 A connection that reads refuses to write, and the one that writes is lent by `change`, which adds the journal's row and
-commits both. There is one thing that no journal may tell, what a visitor looked at: `keep` writes that alone.
+commits both. What a visitor looked at, and when an answer was withdrawn, no journal may tell: `keep` writes that alone.
 """
 
 from __future__ import annotations
@@ -78,10 +78,11 @@ class Ledger:
 
     @contextmanager
     def keep(self) -> Iterator[Connection]:
-        """A connection for visits of who asked that they be kept: committed when the block ends, and in no journal.
+        """A connection for visits of who asked that they be kept, and for what goes with a withdrawn answer: committed
+        when the block ends, and in no journal.
 
         A row there has its time to the second and stays: it would tell when somebody looked at what, also once he has
-        turned his visits off. Raises StoreError.
+        turned his visits off, and whoever saw a visitor at the screen which answer was his. Raises StoreError.
         """
         with self._written() as connection:
             yield connection

@@ -32,6 +32,7 @@ from hall_app.house.people.records.person import (
     how_many,
     is_as_it_was,
     see_that_one_is_left,
+    stays,
 )
 from hall_app.house.people.records.sessions import end_all, use_second_factor
 from survey.store.database import now
@@ -122,7 +123,7 @@ class Accounts:
         kept = digest(secret if long else typed_code(secret))
         row = {"digest": kept, "user": person, "purpose": "open"}
         with self._ledger.change(who, "people", f"{person} code") as connection:
-            found = found_by(connection, id=person)
+            found = found_by(connection, id=person) if stays(connection, person) else None
             if found is None or found.closed is not None:
                 raise PeopleError("no-account" if found is None else "account-closed")
             connection.execute(delete(table).where(table.c.user == person, table.c.purpose == "open"))
@@ -251,7 +252,7 @@ class Accounts:
 
 def _delete(connection: Connection, person: str) -> None:
     """Raises PeopleError where the account is gone, or no administrator would be left."""
-    found = found_by(connection, id=person)
+    found = found_by(connection, id=person) if stays(connection, person, alone=True) else None
     if found is None:
         raise PeopleError("no-account")
     release(connection, person)

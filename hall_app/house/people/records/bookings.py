@@ -1,7 +1,8 @@
 """Places booked, or waited for: never more than there are, in the order of asking, and once however often it is sent.
 
 Whoever changes bookings of an occasion holds its row locked (`_lock`), in SQLite the whole file. What is counted under
-the lock holds until the commit, and the table's own check would refuse an overbooking even so.
+the lock holds until the commit, and the table's own check would refuse an overbooking even so. Before it the account is
+held whose booking it is (`stays`).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from sqlalchemy import ColumnElement, Connection, delete, func, select, update
 
 from hall_app.house.people.database import Ledger, tables
 from hall_app.house.people.errors import PeopleError
+from hall_app.house.people.records.person import stays
 from survey.store.database import in_utc, now
 
 __all__ = ["Booking", "Bookings", "promote", "release"]
@@ -50,11 +52,13 @@ class Bookings:
     def book(self, person: str, occasion: str, size: int, key: str, *, party: str = "") -> Booking:
         """Places, or a place on the waiting list. key: of the form; with the same one it is the same booking.
 
-        Raises PeopleError.
+        Raises PeopleError, also where the account is deleted just now.
         """
         name = " ".join(party.split())[:LONGEST_PARTY]
         try:
             with self._ledger.change(person, "book", occasion) as connection:
+                if not stays(connection, person):
+                    raise PeopleError("no-account")
                 row = _lock(connection, occasion, turn=True)
                 if row is None or not _is_to_come(row):
                     raise PeopleError("no-occasion")
@@ -90,10 +94,12 @@ class Bookings:
         """
         table = tables.booking
         with self._ledger.change(who, act, f"booking {booking}") as connection:
-            query = select(table.c.occasion).where(*_named(booking, place))
+            query = select(table.c.occasion, table.c.user).where(*_named(booking, place))
             query = query.where(table.c.user == person) if person else query
-            occasion = connection.execute(query).scalar_one_or_none()
-            row = None if occasion is None else _lock(connection, occasion)
+            found = connection.execute(query).one_or_none()
+            row = None
+            if found is not None and stays(connection, found.user):
+                row = _lock(connection, found.occasion)
             if row is None:
                 raise PeopleError("no-booking")
             if person and in_utc(row.ends) <= now():

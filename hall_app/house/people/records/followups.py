@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 from datetime import datetime
 
 from sqlalchemy import delete, select
 
-from hall_app.house.people.database import NOBODY, Ledger, tables
+from hall_app.house.people.database import Ledger, tables
 from hall_app.house.people.errors import PeopleError
 from survey.store.database import in_utc, now
 
@@ -52,11 +53,16 @@ class FollowUps:
     def forget(self, answer: str) -> None:
         """What was noted of suggestions whose answer was withdrawn: a note may repeat them. answer: its pseudonym."""
         table = tables.followup
+        mine = table.c.id.startswith(f"{answer}.", autoescape=True)
         with self._ledger.read() as connection:
-            mine = table.c.id.startswith(f"{answer}.", autoescape=True)
-            known = connection.execute(select(table.c.id).where(mine)).scalars().all()
-        for key in known:
-            with self._ledger.change(NOBODY, "answers", f"{key} withdrawn") as connection:
-                connection.execute(delete(table).where(table.c.id == key))
-        if known:
-            self._ledger.scrub()
+            if connection.execute(select(table.c.id).where(mine)).first() is None:
+                return
+        with self._ledger.keep() as connection:
+            connection.execute(delete(table).where(mine))
+        self._ledger.scrub()
+
+    def forget_all(self, withdrawn: Callable[[], Set[str]]) -> None:
+        """The same of all that is still noted. withdrawn: pseudonyms; asked only where there is anything to forget."""
+        known = {key.partition(".")[0] for key in self.all()}
+        for answer in known & withdrawn() if known else ():
+            self.forget(answer)

@@ -23,6 +23,7 @@ __all__ = [
     "how_many",
     "is_as_it_was",
     "see_that_one_is_left",
+    "stays",
 ]
 
 _ADDRESS = re.compile(r"[^@\s]{1,64}@[^@\s.]+(\.[^@\s.]+)+")
@@ -91,6 +92,17 @@ def is_as_it_was(connection: Connection, checked: Row) -> bool:
     now = connection.execute(mine).one_or_none()
     seen = (checked.password, checked.authenticator, checked.closed)
     return now is not None and (now.password, now.authenticator, now.closed) == seen
+
+
+def stays(connection: Connection, person: str, *, alone: bool = False) -> bool:
+    """Whether the account is there: it is not deleted before the commit, or changed by nobody else (`alone`).
+
+    Asked before anything else is locked, by who books as by who deletes: so no two of them wait for each other.
+    """
+    user = tables.user
+    mine = select(user.c.id).where(user.c.id == person)
+    held = mine.with_for_update() if alone else mine.with_for_update(read=True, key_share=True)
+    return connection.execute(held).one_or_none() is not None
 
 
 def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, ...]:

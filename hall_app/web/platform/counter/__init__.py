@@ -1,14 +1,15 @@
 """The counter: what all pages with forms have in common.
 
 asking: what a page is asked and what it answers; cookies: of sessions; guard: whether a form is one of ours; pace: how
-often one may try; fields: forms as HTML; leaves: long lists on pages; counter: pages and acts put at their addresses,
-refusals told; signing_in: what both counters let in by.
+often one may try; fields: forms as HTML; clock: days and hours told; leaves: long lists on pages; counter: pages and
+acts put at their addresses, refusals told; signing_in: what both counters let in by.
 """
 
 from hall_app.web.platform.counter.asking import Asking, Brought, Download, Guest, Moved, Page, Shown
+from hall_app.web.platform.counter.clock import clock_line, told_day, told_hours, told_time
 from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
 from hall_app.web.platform.counter.counter import LEAD, STATUS, Act, Answer, Counter, View
-from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
+from hall_app.web.platform.counter.fields import Field, button, form
 from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of, is_whole
 from hall_app.web.platform.counter.leaves import leaf_asked, leaf_ways
 from hall_app.web.platform.counter.pace import RATES, Pace
@@ -38,6 +39,7 @@ __all__ = [
     "View",
     "address_field",
     "button",
+    "clock_line",
     "form",
     "form_of",
     "is_whole",
@@ -46,5 +48,6 @@ __all__ = [
     "sign_in_fields",
     "signed_in",
     "told_day",
+    "told_hours",
     "told_time",
 ]

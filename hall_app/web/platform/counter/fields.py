@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import date, datetime
 from html import escape
 
 from hall_app.web.platform.counter.asking import Asking
 from hall_app.web.platform.counter.guard import SEAL
 
-__all__ = ["Field", "button", "form", "told_day", "told_time"]
-
-_WEEKDAYS = {"zh": "一二三四五六日", "en": ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun")}
+__all__ = ["Field", "button", "form"]
 
 
 @dataclass(frozen=True)
@@ -96,17 +93,3 @@ def button(
     spoken = f'<span class="unseen"> {escape(about)}</span>' if about else ""
     return f"""<form method="post" action="{escape(to)}" class="small-act">{unseen}
 <button class="plain">{escape(words)}{spoken}</button></form>"""
-
-
-def told_day(day: date, lang: str) -> str:
-    """2026-11-28 and its weekday."""
-    name = _WEEKDAYS[lang][day.weekday()]
-    return f"{day:%Y-%m-%d} 周{name}" if lang == "zh" else f"{name} {day:%Y-%m-%d}"
-
-
-def told_time(at: datetime, lang: str) -> str:
-    """A moment on the house's own clock, as a time element."""
-    local = at.astimezone()
-    return (
-        f'<time datetime="{local.isoformat(timespec="minutes")}">{told_day(local, lang)} {local:%H:%M}</time>'
-    )

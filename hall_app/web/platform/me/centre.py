@@ -5,7 +5,18 @@ from __future__ import annotations
 from html import escape
 
 from hall_app.web.pages.frame import part
-from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, Shown, button, form, told_time
+from hall_app.web.platform.counter import (
+    Asking,
+    Counter,
+    Field,
+    Moved,
+    Page,
+    Shown,
+    button,
+    clock_line,
+    form,
+    told_time,
+)
 from hall_app.web.platform.me.answers import AnswerShelf
 from hall_app.web.platform.me.keepsakes import Shelf
 from hall_app.web.platform.me.notices import notice
@@ -32,7 +43,8 @@ class Centre:
         bodies = "".join(part(key, name, inside) for key, name, inside in parts)
         main = f"""<header class="who"><div><h1>{title}</h1>
 <p class="lead">{escape(person.name or person.address)}</p></div>{out}</header>{notice(asking)}
-<nav class="doors" aria-label="{word("本页", "On this page")}">{ways}</nav><div class="centre">{bodies}</div>"""
+<nav class="doors" aria-label="{word("本页", "On this page")}">{ways}</nav>{clock_line(bodies, asking.lang)}
+<div class="centre">{bodies}</div>"""
         return Shown(Page(title, main, "me"), path="/me")
 
     def _kept(self, asking: Asking) -> tuple[tuple[str, str, str], ...]:
@@ -107,7 +119,7 @@ class Centre:
                 "session",
                 "/me/sessions/end",
                 word("结束", "End"),
-                about=f"{one.made:%Y-%m-%d %H:%M}",
+                about=f"{one.made.astimezone():%Y-%m-%d %H:%M}",
                 hidden={"session": str(one.id)},
             )
             lines.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from html import escape
 from typing import Any
 
@@ -10,6 +11,7 @@ from hall_app.house.people.records import FollowUp
 from hall_app.web.platform.counter import Asking, Counter, Field, Shown, button, form, told_time
 from hall_app.web.platform.office.deeds import Deed, Reading, number_in
 from hall_app.web.platform.office.table import office_page, rows
+from survey.errors import StoreError
 
 __all__ = ["opinion_deeds", "opinion_readings"]
 
@@ -50,8 +52,13 @@ class _Rooms:
 
     def suggestions(self, asking: Asking) -> list[dict[str, Any]]:
         known = self._people.followups.all()
-        found = []
-        for one in self._house.survey_suggestions():
+        said, found = list(self._house.survey_suggestions()), []
+        survey = self._house.survey_answers
+        if survey is not None and known.keys() - {one["id"] for one in said}:
+            # Of an earlier version, or of an answer whose withdrawal could not be followed then, or that was purged.
+            with suppress(StoreError):
+                self._people.followups.forget_all(survey.withdrawn)
+        for one in said:
             after = known.get(one["id"], FollowUp(one["id"], "open", "", "", None))
             told = {"state": after.state, "note": after.note, "by": after.by}
             found.append(one | told | {"at": after.at.isoformat() if after.at else None})

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from html import escape
 from typing import Any
 
+from hall_app.content.problems import in_language
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Counter, Download, Shown
 from hall_app.web.platform.office.deeds import Reading, number_in
@@ -50,15 +52,15 @@ class _Rooms:
                 return one["id"], number_in(asking.query.get("version", str(one["version"])))
         raise PeopleError("no-questionnaire")
 
-    def _made(self, asking: Asking, act: str, task: str) -> tuple[str, bytes]:
+    def _made(self, asking: Asking, act: str, task: str, language: str | None = None) -> tuple[str, bytes]:
         """It is made, and handed out once that is written down. Raises PeopleError, StoreError."""
         (key, version), make = self._one(asking), self._house.survey_made
         if make is None:
             raise PeopleError("no-questionnaire")
         try:
-            made = make(key, task, version)
+            made = make(key, task, version, language)
         except AnswerError as error:
-            raise PeopleError("survey-refused", why=str(error)) from None
+            raise PeopleError("survey-refused", why=f"{error.problem} – {error.remedy}") from None
         self._people.note(asking.person.id, act, f"{key} version {version} {task}")
         return made
 
@@ -135,7 +137,7 @@ class _Rooms:
     def analysis_page(self, asking: Asking) -> Shown:
         word, key = asking.word, asking.names["key"]
         titles = {one["id"]: one["title"][asking.lang] for one in self.all(asking)}
-        found = self.analysis(asking)
+        found = json.loads(self._made(asking, "analysis", "analysis", asking.lang)[1])
         version = self._one(asking)[1]
         name = f"{titles[key]} · {word('分析', 'Analysis')} · v{version}"
         facts = (
@@ -149,7 +151,7 @@ class _Rooms:
         deleted, total = found.get("alpha_if_deleted") or {}, found.get("item_total") or {}
         lines = [(escape(item), _figure(total.get(item)), _figure(deleted.get(item))) for item in items]
         heads = (word("题目", "Item"), word("题总相关", "Item–total"), word("删除后 α", "α if deleted"))
-        notes = "".join(f"<li>{escape(_note(one))}</li>" for one in found.get("warnings") or ())
+        notes = "".join(f"<li>{escape(one)}</li>" for one in _remarks(found, asking.lang))
         warned = f'<ul class="names">{notes}</ul>' if notes else ""
         more = word(
             "完整分析：survey analyse，或 /api/office/questionnaires/…/analysis。",
@@ -169,5 +171,7 @@ def _figure(value: Any) -> str:
     return str(value) if isinstance(value, int) else f"{value:.3f}"
 
 
-def _note(one: Any) -> str:
-    return str(one.get("text") or one.get("message") or one) if isinstance(one, dict) else str(one)
+def _remarks(found: dict[str, Any], language: str) -> Iterator[str]:
+    """What the analysis warns of. The survey tells why a step failed in the words of the error, which are English."""
+    for remark, warning in zip(found["remarks"], found["warnings"], strict=True):
+        yield remark.replace(warning["message"], in_language(warning["message"], language))

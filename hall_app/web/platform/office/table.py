@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-from hall_app.web.platform.counter import Asking, Page, Shown, button
+from hall_app.web.platform.counter import Asking, Page, Shown, button, clock_line
 
 __all__ = ["office_page", "rows"]
 
@@ -45,8 +45,9 @@ def office_page(
     out = button(asking, "sign-out", "/office/sign-out", word("退出", "Sign out"), hidden={})
     told = f'<p class="done" role="status">{word(*_DONE)}</p>' if asking.query.get("done") else ""
     top = f'<p class="lead">{lead}</p>' if lead else ""
+    clock = clock_line(top + inside, asking.lang)
     main = f"""<header class="who"><div><h1>{escape(title)}</h1>{top}</div>{out}</header>
-<nav class="rooms" aria-label="{word("办公室", "Office")}">{listed}</nav>{told}{inside}"""
+<nav class="rooms" aria-label="{word("办公室", "Office")}">{listed}</nav>{told}{clock}{inside}"""
     return Shown(Page(title, main, "", query or {}, script), path=f"/office{'/' if path else ''}{path}")
 
 

@@ -7,7 +7,17 @@ from datetime import UTC, datetime, timedelta
 from html import escape
 
 from hall_app.house.people.records import Occasion
-from hall_app.web.platform.counter import Asking, Page, Shown, leaf_asked, leaf_ways, told_day, told_time
+from hall_app.web.platform.counter import (
+    Asking,
+    Page,
+    Shown,
+    clock_line,
+    leaf_asked,
+    leaf_ways,
+    told_day,
+    told_hours,
+    told_time,
+)
 
 __all__ = ["LISTED", "activities_page", "address_of", "bounds_of", "left_of", "month_of", "visit_page"]
 
@@ -64,7 +74,8 @@ def activities_page(asking: Asking, found: Iterable[Occasion], *, more: bool) ->
     ways = f'<p class="doors">{calendar if cards else ""}{visit}</p>'
     page = leaf_asked(asking)
     pages = leaf_ways(asking, "/activities", page, more=more)
-    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed}{pages}'
+    clock = clock_line(listed, asking.lang)
+    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{clock}{listed}{pages}'
     query = {"page": str(page)} if page > 1 else {}
     return Shown(Page(title, main, "activities", query), path="/activities")
 
@@ -104,13 +115,14 @@ def visit_page(asking: Asking, found: Iterable[Occasion], month: str, months: It
         for one in months
     )
     ways = f'<nav class="doors" aria-label="{word("月份", "Months")}">{others}</nav>' if others else ""
+    ways += clock_line(listed, asking.lang)
     main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed or f"<p>{none}</p>"}'
     query = {"month": month} if asking.query.get("month") and month else {}
     return Shown(Page(title, main, "visit", query), path="/visit")
 
 
 def _slot(asking: Asking, one: Occasion) -> str:
-    begins, ends = one.plan.begins.astimezone(), one.plan.ends.astimezone()
+    hours = told_hours(one.plan.begins, one.plan.ends, asking.lang)
     way, left = escape(asking.address(address_of(one))), left_of(asking, one)
-    return f"""<li><a href="{way}"><b>{begins:%H:%M}–{ends:%H:%M}</b>
+    return f"""<li><a href="{way}"><b>{hours}</b>
 <span>{escape(one.told("title", asking.lang))}</span> <span class="quiet">{left}</span></a></li>"""

@@ -14,6 +14,7 @@ from hall_app.web.platform.counter import (
     Page,
     Shown,
     button,
+    clock_line,
     form,
     told_time,
 )
@@ -55,7 +56,8 @@ class OccasionPages:
         listed = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts if value)
         said = _DONE.get(asking.query.get("done", ""))
         told = f'<p class="done" role="status">{asking.word(*said)}</p>' if said else ""
-        main = f"""<header><h1>{escape(title)}</h1></header>{told}<dl class="how">{listed}</dl>
+        clock = clock_line(listed, asking.lang)
+        main = f"""<header><h1>{escape(title)}</h1></header>{told}<dl class="how">{listed}</dl>{clock}
 <div class="text">{paragraphs}</div><div class="desk">{self._booking(asking, one)}{ways}</div>"""
         return Shown(Page(title, main, part), path=address_of(one))
 

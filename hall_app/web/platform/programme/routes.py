@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Counter, Download, Moved, Shown, leaf_asked
 from hall_app.web.platform.programme.calendar import calendar_file
 from hall_app.web.platform.programme.lists import LISTED, activities_page, bounds_of, month_of, visit_page
@@ -35,11 +36,14 @@ def add_programme(counter: Counter) -> None:
         return calendar_file(asking, (occasion,), f"{occasion.id}.ics")
 
     def booked(asking: Asking) -> Shown | Moved:
-        if asking.guest is None:
-            return Moved(
-                asking.address("/me", next=asking.path.removesuffix("/book").removesuffix("/cancel"))
-            )
-        return pages.cancel(asking) if asking.path.endswith("/cancel") else pages.book(asking)
+        way, _, act = asking.path.rpartition("/")
+        try:
+            if asking.guest is not None:
+                return pages.cancel(asking) if act == "cancel" else pages.book(asking)
+        except PeopleError as error:
+            if error.key != "no-account":  # who deleted it meanwhile is signed out
+                raise
+        return Moved(asking.address("/me", next=way))
 
     counter.page("/activities.ics", all_activities)
     counter.page("/activities", activities)
