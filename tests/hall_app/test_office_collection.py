@@ -19,7 +19,7 @@ from PIL import Image
 
 from hall_app.check import check
 from hall_app.content import load
-from hall_app.house.drafts import Drafts, Examination, Publication, Shelf
+from hall_app.house.drafts import Drafts, Examination, Publication, Shelf, publication
 from hall_app.house.people import People, PeopleError, Role
 from hall_app.house.safekeeping import ArchiveError, Holdings, back_up, restore
 
@@ -255,22 +255,52 @@ def test_a_restored_house_goes_on_drafting_and_undoing(counter, curator, chest, 
     drafts.drop(key)
     people = People(data)
     try:
-        publication = Publication(drafts, Examination(house.content), people)
+        putting = Publication(drafts, Examination(house.content), people)
         (one,) = people.revisions.of(key)
-        publication.undo("console", one.id)
+        putting.undo("console", one.id)
         assert (house.content / "exhibits" / key / TOML).read_bytes() == before
-        publication.undo("console", people.revisions.of(key)[0].id)
+        putting.undo("console", people.revisions.of(key)[0].id)
         assert b"Published" in (house.content / "exhibits" / key / TOML).read_bytes()
 
         inside = drafts.shelf.put(b"not of this exhibit")
         with people.revisions.adding("console", "publish", key, {"../../evil.txt": (inside, "")}):
             pass  # as a history would have it that somebody made up
         with pytest.raises(PeopleError) as refused:
-            publication.undo("console", people.revisions.of(key)[0].id)
+            putting.undo("console", people.revisions.of(key)[0].id)
     finally:
         people.close()
     assert refused.value.key == "no-file"
     assert not (house.content / "evil.txt").exists()
+
+
+@pytest.mark.parametrize("written", [1, 2])
+def test_publishing_again_completes_what_was_killed(counter, curator, chest, monkeypatch, written):
+    """Some files are in place and nothing is written down: it is, with what was there before, and can be undone."""
+    key, before = chest.name, (chest / TOML).read_bytes()
+    curator.told(f"collection/{key}/fields", {"title.en": "Published"})
+    curator.bring(key, [("Front view.png", png())], use="media")
+    drafts = Drafts(counter.content, counter.data, Shelf(counter.data / "shelf"))
+    again = Publication(drafts, Examination(counter.content), counter.people)
+    put, changed, done = publication.replace_file, drafts.of(key).files, []
+    assert len(changed) == 2
+
+    def killed(*given) -> None:
+        put(*given)
+        done.append(given)
+        if len(done) == written:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(publication, "replace_file", killed)
+    with pytest.raises(KeyboardInterrupt):
+        again.publish("console", key)
+    monkeypatch.undo()
+    assert counter.people.revisions.of(key) == ()
+    again.tidy()
+    again.publish("console", key)
+    (revision,) = counter.people.revisions.of(key)
+    assert {name: after for name, (_, after) in revision.files.items()} == changed
+    again.undo("console", revision.id)
+    assert (chest / TOML).read_bytes() == before
 
 
 def test_a_new_exhibit_from_draft_to_hall_and_back(counter, curator):

@@ -142,10 +142,16 @@ class Drafts:
         return hashlib.sha256(told.encode()).hexdigest()[:16] if told else ""
 
     def stale(self, exhibit: str) -> tuple[str, ...]:
-        """Files of the draft that were changed in the hall since."""
+        """Files of the draft that were changed in the hall since, but those that are there as the draft has them: what
+        was killed while it published leaves such, and publishing again completes it."""
         draft = self.of(exhibit)
-        pairs = draft.base.items() if draft else ()
-        return tuple(name for name, base in pairs if self._digest(exhibit, name) != base)
+        if draft is None:
+            return ()
+        return tuple(
+            name
+            for name, base in draft.base.items()
+            if self._digest(exhibit, name) not in (base, draft.files[name])
+        )
 
     def set(
         self, who: str, exhibit: str, changed: Mapping[str, bytes | None], tags: Mapping[str, str]
@@ -199,8 +205,13 @@ class Drafts:
         }
 
     def digests(self) -> frozenset[str]:
-        """Of all files that drafts need."""
-        return frozenset(digest for draft in self.all().values() for digest in draft.files.values())
+        """Of all files that drafts need. What they change is among them: a kill while publishing leaves it here alone."""
+        return frozenset(
+            digest
+            for draft in self.all().values()
+            for pairs in (draft.base, draft.files)
+            for digest in pairs.values()
+        )
 
     def _digest(self, exhibit: str, name: str) -> str:
         path = self.home(exhibit) / name

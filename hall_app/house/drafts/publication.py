@@ -97,7 +97,7 @@ class Publication:
     def _put(self, who: str, act: str, exhibit: str, files: _Pairs) -> None:
         """Where one file cannot be written, those before it are put back and nothing is written down."""
         home, shelf = self._drafts.home(exhibit), self._drafts.shelf
-        old = {name: (home / name).read_bytes() if before else None for name, (before, _) in files.items()}
+        old = {name: (home / name).read_bytes() if (home / name).is_file() else None for name in files}
         new = {name: shelf.path(after).read_bytes() if after else None for name, (_, after) in files.items()}
         for data in old.values():
             if data is not None:
