@@ -205,7 +205,7 @@ class Drafts:
         }
 
     def digests(self) -> frozenset[str]:
-        """Of all files that drafts need. What they change is among them: a kill while publishing leaves it here alone."""
+        """Of all files that drafts need, what they change among them: a kill while publishing leaves it here alone."""
         return frozenset(
             digest
             for draft in self.all().values()
