@@ -47,6 +47,12 @@ def png(size=(40, 30), colour="#7a4b2e", kind="PNG") -> bytes:
     return data.getvalue()
 
 
+def bring_picture(one: Clerk, key: str) -> None:
+    told = {"use": "picture", "alt.zh": "袍", "alt.en": "A robe"}
+    answer = one.bring(key, [("Front view.png", png())], **told)
+    assert answer.status == 200, answer.text
+
+
 def tag(one: Clerk, key: str, name: str = TOML) -> str:
     return one.told(f"collection/{key}/text?file={name}")["tag"]
 
@@ -241,7 +247,7 @@ def test_history_tells_differences_and_undo_takes_them_back(curator, chest):
 def test_a_restored_house_goes_on_drafting_and_undoing(counter, curator, chest, tmp_path):
     key, before = chest.name, (chest / TOML).read_bytes()
     curator.told(f"collection/{key}/fields", {"title.en": "Published"})
-    curator.bring(key, [("Front view.png", png())], use="media")
+    bring_picture(curator, key)
     publish(curator, key)
     curator.told(f"collection/{key}/fields", {"title.en": "In a draft"})
     file, data = tmp_path / "all.zip", tmp_path / "data"
@@ -278,7 +284,7 @@ def test_publishing_again_completes_what_was_killed(counter, curator, chest, mon
     """Some files are in place and nothing is written down: it is, with what was there before, and can be undone."""
     key, before = chest.name, (chest / TOML).read_bytes()
     curator.told(f"collection/{key}/fields", {"title.en": "Published"})
-    curator.bring(key, [("Front view.png", png())], use="media")
+    bring_picture(curator, key)
     drafts = Drafts(counter.content, counter.data, Shelf(counter.data / "shelf"))
     again = Publication(drafts, Examination(counter.content), counter.people)
     put, changed, done = publication.replace_file, drafts.of(key).files, []
