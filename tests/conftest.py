@@ -9,6 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from durations import is_of_the_night
 from plain_hall import write_plain_hall
 from running_hall import running_hall
 from scanned_hall import bake_small, write_scanned_hall
@@ -90,9 +91,12 @@ POSTGRES_BY_DAY = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
+    """Before `-m` chooses."""
     for item in items:
-        asked = getattr(item, "callspec", None)
-        if asked and asked.params.get("database") == "postgresql" and item.path.name not in POSTGRES_BY_DAY:
+        asked, name = getattr(item, "callspec", None), item.nodeid.partition("[")[0]
+        if (
+            asked and asked.params.get("database") == "postgresql" and item.path.name not in POSTGRES_BY_DAY
+        ) or (not item.get_closest_marker("door") and is_of_the_night(name, item.fixturenames)):
             item.add_marker(pytest.mark.nightly)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from bench.house import Arrows, Tree, floors, within
 
+pytestmark = pytest.mark.door
 ROOT = Path(__file__).parent.parent
 ROOMS = ("sim_core", "survey", "hall_app")
 ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}

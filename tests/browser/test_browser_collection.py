@@ -82,6 +82,7 @@ def turned_by_hand(page) -> None:
     assert page.evaluate(f"{touched}.every((box) => box.width >= 44 && box.height >= 44)")
 
 
+@pytest.mark.door
 def test_a_curator_s_day(office_hall, chromium, tmp_path):
     from PIL import Image
 

@@ -8,7 +8,7 @@ from bench.wire import wire
 from moving_hall import write_comparing_hall
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.nightly]
 
 VIEW = {"width": 900, "height": 600}
 NODES = "() => ['/closeup', '/comparison'].filter((name) => window.__viserMutable.nodeRefFromName[name])"

@@ -91,6 +91,7 @@ def tap(page, key: str) -> None:
     page.evaluate(TAP, [key.removeprefix("Shift+"), key.startswith("Shift+")])
 
 
+@pytest.mark.door
 @pytest.mark.parametrize(
     ("key", "sign"),
     by_day([("KeyQ", 1)], [("KeyQ", 1), ("KeyE", -1), ("Shift+ArrowLeft", 1), ("Shift+ArrowRight", -1)]),

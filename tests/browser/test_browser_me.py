@@ -121,6 +121,7 @@ def test_an_exhibit_is_kept_from_its_close_up_by_key_alone(plain_hall, chromium)
     page.context.close()
 
 
+@pytest.mark.door
 def test_signing_up_and_out_by_key_alone(plain_hall, chromium):
     page = page_of(chromium, Visitor(plain_hall.url), 1000)
     refused = []

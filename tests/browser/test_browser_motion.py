@@ -58,6 +58,7 @@ def page(chromium, hall):
     page.close()
 
 
+@pytest.mark.door
 def test_it_plays_and_asks_for_no_byte_more(page):
     soon(page, lambda: page.mouse.move(200, 100) or page.evaluate("() => hall.playing()") == [NODE])
     assert sways(page) > 0.05

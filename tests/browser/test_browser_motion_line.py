@@ -11,7 +11,7 @@ from bench.wire import wire
 from moving_hall import FRAMES, RATE, write_worn_hall
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.nightly]
 
 VIEW = {"width": 480, "height": 270}
 NODE = "/exhibits/box"

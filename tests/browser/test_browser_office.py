@@ -172,6 +172,7 @@ def test_what_is_refused_is_clean_and_fits(office_hall, chromium, lang, width, t
     page.context.close()
 
 
+@pytest.mark.door
 def test_a_place_is_booked_and_checked_in_by_key_alone(plain_hall, chromium):
     activity = plan(plain_hall, "activity")
     page = page_of(chromium, member(plain_hall)[0], 1000)

@@ -9,7 +9,7 @@ from bench.look_silk import dressed_hall
 from PIL import Image
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.nightly]
 
 VIEW = {"width": 900, "height": 600}
 MATERIALS = """

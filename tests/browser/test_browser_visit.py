@@ -99,6 +99,7 @@ def test_visers_own_panel_is_out_of_sight(page, width):
     assert seen["canvas"] == seen["size"]
 
 
+@pytest.mark.door
 def test_walks_and_is_stopped(page):
     closed(page)
     place(page, 0.0, -2.0, 0.0)
@@ -226,6 +227,7 @@ def test_every_picture_shows_and_says_what_it_is(page):
         assert len(picture.get_attribute("alt")) > 10
 
 
+@pytest.mark.door
 @pytest.mark.parametrize(
     ("tab", "kind"), by_day([("film", "video")], [("film", "video"), ("sound", "audio")])
 )
@@ -300,6 +302,7 @@ def test_escape_closes_a_window_over_the_close_up_first(page):
     page.locator("[data-testid=panel]").wait_for(state="hidden")
 
 
+@pytest.mark.door
 def test_enter_opens_the_exhibit_one_has_walked_to(page):
     """A window gives the focus back to its button; walking gives it back to the hall."""
     closed(page)
@@ -343,6 +346,7 @@ def test_music_starts_with_entering_and_can_be_switched(page):
     assert button.get_attribute("aria-pressed") == "false"
 
 
+@pytest.mark.door
 def test_questionnaire_is_answered_and_exported(page, shipped_hall):
     opened(page)
     page.click("[data-testid=survey]")

@@ -3,7 +3,7 @@
 import pytest
 from bench.browser import PATIENCE, enter, soon, stand_before
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.nightly]
 
 # A number a mesh of the node that tells where its vertices are.
 WHERE = """

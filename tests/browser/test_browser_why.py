@@ -9,7 +9,7 @@ from full_matrix import by_day
 from moving_hall import FRAMES, box_points, write_moving_hall
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.nightly]
 
 VIEW = {"width": 900, "height": 600}
 

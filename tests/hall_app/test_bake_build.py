@@ -49,6 +49,7 @@ def folder(tmp_path):
     return coarse(tmp_path)
 
 
+@pytest.mark.door
 def test_build_is_whole_and_up_to_date(coarse_scarf):
     folder, first = coarse_scarf
     baked = folder / "exhibits" / "pibo" / "baked"

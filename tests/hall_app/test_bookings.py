@@ -87,6 +87,7 @@ def in_order(people: People, occasion: str) -> bool:
     return not booked or not waiting or max(one.turn for one in booked) < min(one.turn for one in waiting)
 
 
+@pytest.mark.door
 def test_two_hundred_ask_for_twenty_places_at_once(people, database):
     """Over eight houses that share the database, as eight processes would: each has locks of its own."""
     houses = [people, *(People(database) for _ in range(7))]

@@ -307,6 +307,7 @@ def test_command_json(house: Path, capsys: pytest.CaptureFixture[str]):
     assert "no such folder" in capsys.readouterr().out
 
 
+@pytest.mark.door
 def test_shipped_content_has_no_problem():
     """The bake of this checkout is judged by the tests of baking: it is not made by every change of the content."""
     found = [problem for problem in check(ASSETS) if problem.key != "outfit"]

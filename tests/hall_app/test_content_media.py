@@ -238,6 +238,7 @@ def test_the_picture_of_a_sheet_measures_what_it_is_given():
     assert np.asarray(small).tobytes() != np.asarray(other).tobytes()
 
 
+@pytest.mark.door
 def test_shipped_sheets_are_of_the_patterns_as_they_are():
     for sheet in ASSETS.glob("exhibits/*/media/pattern.svg"):
         table = tomllib.loads((sheet.parents[1] / "exhibit.toml").read_text("utf-8"))

@@ -105,6 +105,7 @@ def known() -> dict[str, str]:
     return {english: chinese for table in catalogue().values() for english, chinese in table.items()}
 
 
+@pytest.mark.door
 def test_every_text_of_the_sources_has_its_chinese():
     there = known()
     missing = {
@@ -114,11 +115,13 @@ def test_every_text_of_the_sources_has_its_chinese():
     assert words() <= set(known())
 
 
+@pytest.mark.door
 def test_no_text_comes_from_where_nobody_looks():
     """Who hands on what others say is written down, so that a new one is thought about."""
     assert {(one.file, one.function) for one in said(SOURCES) if one.text is None} == PASSED_ON
 
 
+@pytest.mark.door
 def test_nothing_is_translated_that_nobody_says():
     told = {one.text for one in said(SOURCES)} | words()
     unsaid = [

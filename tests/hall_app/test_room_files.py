@@ -156,6 +156,7 @@ def test_writings_do_not_touch_and_fit():
             assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
 
 
+@pytest.mark.door
 @needs_font
 def test_labels_say_what_the_exhibits_are_called(room, content):
     blank = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)

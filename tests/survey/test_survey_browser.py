@@ -78,6 +78,7 @@ def stored(site, key="garment"):
     return [row.answer for row in mounted.store.rows(mounted.questionnaires[key])]
 
 
+@pytest.mark.door
 def test_a_visitor_answers_and_receives_the_code(visit, site):
     page = visit("/questionnaires/garment?lang=en&exhibit=pibo")
     answer_all(page)
