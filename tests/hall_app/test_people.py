@@ -798,7 +798,7 @@ def test_looks_leave_the_journal_of_a_house_of_an_older_schema(database, ledger)
 def test_withdrawals_leave_the_journal_of_a_house_of_an_older_schema(database, ledger):
     with ledger.change("", "answers", "a1.culture withdrawn") as connection:
         space = "" if ledger_is_sqlite(ledger) else "people."
-        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0008'"))
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0009'"))
     again = People(database)
     again.followups.set("console", "a1.culture", "done", "")
     assert [entry.subject for entry in again.journal.entries()] == ["a1.culture done"]
