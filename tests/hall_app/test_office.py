@@ -487,8 +487,8 @@ def test_a_closed_account_is_deleted_once_its_address_was_typed(counter, people)
 
 def test_tokens_are_made_shown_once_and_revoked(counter, people):
     one = clerk(counter, people, Role.ADMINISTRATOR)
-    secret = one.told("tokens", {"label": "for the paper"})["token"]
-    (kept,) = [token for token in one.told("tokens") if token["label"] == "for the paper"]
+    secret = one.told("tokens", {"label": "for its second paper"})["token"]
+    (kept,) = [token for token in one.told("tokens") if token["label"] == "for its second paper"]
     assert secret not in one.get("/office/tokens").text
     one.told(f"tokens/{kept['id']}/revoke", {})
     assert one.api(f"tokens/{kept['id']}/revoke", {}).status == 404
