@@ -45,39 +45,42 @@ class _Rooms:
     def all(self, asking: Asking) -> list[dict[str, Any]]:
         return self._house.survey_standing()
 
-    def _one(self, asking: Asking) -> tuple[str, int]:
+    def _one(self, asking: Asking) -> tuple[dict[str, Any], int]:
         """Which questionnaire is asked for, in which version. Raises PeopleError, StoreError."""
         for one in self.all(asking):
             if one["id"] == asking.names["key"]:
-                return one["id"], number_in(asking.query.get("version", str(one["version"])))
+                return one, number_in(asking.query.get("version", str(one["version"])))
         raise PeopleError("no-questionnaire")
 
-    def _made(self, asking: Asking, act: str, task: str, language: str | None = None) -> tuple[str, bytes]:
+    def _made(
+        self, asking: Asking, version: int, task: str, language: str | None = None
+    ) -> tuple[str, bytes]:
         """It is made, and handed out once that is written down. Raises PeopleError, StoreError."""
-        (key, version), make = self._one(asking), self._house.survey_made
+        key, make = asking.names["key"], self._house.survey_made
         if make is None:
             raise PeopleError("no-questionnaire")
         try:
             made = make(key, task, version, language)
         except AnswerError as error:
             raise PeopleError("survey-refused", why=f"{error.problem} – {error.remedy}") from None
+        act = "analysis" if task == "analysis" else "export"
         self._people.note(asking.person.id, act, f"{key} version {version} {task}")
         return made
 
     def analysis(self, asking: Asking) -> dict[str, Any]:
-        return json.loads(self._made(asking, "analysis", "analysis")[1])
+        return json.loads(self._made(asking, self._one(asking)[1], "analysis")[1])
 
     def export(self, asking: Asking) -> dict[str, Any]:
         """Where the file is: programs fetch it there, with the same session."""
-        key, version = self._one(asking)
-        at = f"/office/questionnaires/{key}/export?version={version}&kind="
+        one, version = self._one(asking)
+        at = f"/office/questionnaires/{one['id']}/export?version={version}&kind="
         return {"files": {kind: f"{at}{kind}" for kind in _FILES}}
 
     def file(self, asking: Asking) -> Download:
         kind = asking.query.get("kind", "csv")
         if kind not in _FILES:
             raise PeopleError("no-file")
-        name, data = self._made(asking, "export", kind)
+        name, data = self._made(asking, self._one(asking)[1], kind)
         return Download(data, name, _FILES[kind][0])
 
     def _lines(self, asking: Asking, one: dict[str, Any]) -> list[tuple[str, ...]]:
@@ -135,11 +138,9 @@ class _Rooms:
         )
 
     def analysis_page(self, asking: Asking) -> Shown:
-        word, key = asking.word, asking.names["key"]
-        titles = {one["id"]: one["title"][asking.lang] for one in self.all(asking)}
-        found = json.loads(self._made(asking, "analysis", "analysis", asking.lang)[1])
-        version = self._one(asking)[1]
-        name = f"{titles[key]} · {word('分析', 'Analysis')} · v{version}"
+        word, (one, version) = asking.word, self._one(asking)
+        found = json.loads(self._made(asking, version, "analysis", asking.lang)[1])
+        name = f"{one['title'][asking.lang]} · {word('分析', 'Analysis')} · v{version}"
         facts = (
             (word("答卷", "Answers"), found.get("n")),
             ("KMO", found.get("kmo")),
@@ -160,7 +161,7 @@ class _Rooms:
         back = f'<a href="{asking.address("/office/questionnaires")}">{word("返回", "Back")}</a>'
         inside = f"""<dl class="how">{listed}</dl>{rows(name, heads, lines)}{warned}
 <p class="quiet">{more}</p><p class="doors">{back}</p>"""
-        where, query = f"questionnaires/{key}/analysis", {"version": str(version)}
+        where, query = f"questionnaires/{one['id']}/analysis", {"version": str(version)}
         return office_page(asking, name, inside, path=where, query=query)
 
 
