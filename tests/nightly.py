@@ -26,8 +26,13 @@ ROOT = Path(__file__).resolve().parents[1]
 # Name by name: of a test that hangs the log has the begin.
 SUITE = (sys.executable, "-m", "pytest", "-v", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
 OTHER = (sys.executable, "tests/machines.py", "--only")
-# Of the suite by day what reckons: each kernel and each statistic is there, at its smallest.
-RECKONING = ("tests/sim_core", "tests/survey", "-k", "sim_core or analys or figure")
+RECKONING = (
+    "tests/sim_core",
+    "tests/hall_app",
+    "tests/survey",
+    "-k",
+    "sim_core or bake or light or analys or figure",
+)
 DAY = ("--", "-m", "not nightly and not browser", *RECKONING)
 # Name -> command. Browsers draw alike on every processor, so those take part on this one only.
 PARTS: dict[str, tuple[str, ...]] = {

@@ -55,7 +55,7 @@ class _Rooms:
         said, found = list(self._house.survey_suggestions()), []
         survey = self._house.survey_answers
         if survey is not None and known.keys() - {one["id"] for one in said}:
-            # Of an earlier version, or of an answer whose withdrawal could not be followed then, or that was purged.
+            # Of an answer whose withdrawal could not be followed then, or that was purged.
             with suppress(StoreError):
                 self._people.followups.forget_all(survey.withdrawn)
         for one in said:
