@@ -142,8 +142,7 @@ class Wardrobe:
         body = wearer.posed(self.outfit.pose), wearer.faces
         moments = [] if played is None else _moments(played, wearer)
         cloth = np.concatenate(points), np.concatenate(faces)
-        feet = wearer.feet()
-        shown = shown_figure(*body, *cloth, triangles=most, moments=moments, feet=feet)
+        shown = shown_figure(*body, *cloth, triangles=most, moments=moments, worn=wearer.worn())
         reach = max((_reach(figure) for figure, _ in moments), default=0.0)
         radius, height = shown.base
         return replace(shown, base=(max(radius, reach + ROUND), height))
@@ -182,7 +181,7 @@ class Wardrobe:
         """Cloth, given from the skin outwards, and what bears it."""
         from sim_core.cloth import Cylinder
         from sim_core.cloth.contact.solid_meshes import solid_mesh
-        from sim_core.garment.glb import LACQUER, LINEN, SHOE
+        from sim_core.garment.glb import LACQUER, LINEN
         from sim_core.garment.levels.figure import BASE
 
         if self.outfit.wearer is None:
@@ -193,10 +192,13 @@ class Wardrobe:
         radius, lift = BASE
         vertices = self.outfit.wearer.posed(self.outfit.pose)
         disc, around = solid_mesh(Cylinder((0, 0, 0), (0, lift, 0), radius, 0.4 * lift), 48)
-        faces, feet = self.outfit.wearer.faces, self.outfit.wearer.feet()
-        shod = feet[faces].all(1)
-        skin = Part(faces[~shod], LINEN, gloss=0.05), Part(faces[shod], SHOE, gloss=0.1)
-        body = Piece(vertices, skin, lift)
+        faces, skin = self.outfit.wearer.faces, list[Part]()
+        bare = np.ones(len(faces), bool)
+        for worn in self.outfit.wearer.worn():
+            own = worn.vertices[faces].all(1)
+            skin.append(Part(faces[own], worn.dye, gloss=0.1))
+            bare &= ~own
+        body = Piece(vertices, (Part(faces[bare], LINEN, gloss=0.05), *skin), lift)
         base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
         raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
         return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)

@@ -1,6 +1,7 @@
 """Who wears a garment: a figure with joints and weights, its poses, and the moving solid that cloth meets."""
 
 from sim_core.body.beneath import HANDS, Beneath, Surface
+from sim_core.body.cover import Cover, covered
 from sim_core.body.joints import JOINTS, OTHER_SIDE, PARENTS
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
@@ -14,6 +15,7 @@ from sim_core.body.wearer import Figure
 __all__ = [
     "HANDS",
     "Beneath",
+    "Cover",
     "Figure",
     "JOINTS",
     "LIMITS",
@@ -30,6 +32,7 @@ __all__ = [
     "Stand",
     "Surface",
     "TBar",
+    "covered",
     "dual_quaternion_skin",
     "linear_skin",
     "load_motion",

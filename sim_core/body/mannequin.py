@@ -15,7 +15,7 @@ from sim_core.body.skinning import SKINS
 from sim_core.errors import FileProblem
 from sim_core.validation.files import read_npz, written_whole
 
-__all__ = ["Mannequin"]
+__all__ = ["Colour", "Mannequin", "Piece"]
 
 FORMAT = 2
 # What posing and laying ask for, and the joint that each mark of the surface goes with.
@@ -31,9 +31,20 @@ MARKS = {
     "tip_r": "wrist_r",
 }
 TALLEST = 5.0  # [m]
+Colour = tuple[float, float, float]
+SHOES: Colour = (0.145, 0.15, 0.20)  # sRGB, dark silk
 SHOE = 0.012  # [m] above the ankle's joint that a low shoe ends
 REMEDY = "make it by `simcore figure`"
 _FIELDS = ("vertices", "faces", "heads", "weights", "marks")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What a figure wears on its skin: its name, its colour (sRGB, 0 to 1), and the vertices (V,) bool it covers."""
+
+    name: str
+    dye: Colour
+    vertices: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -42,7 +53,7 @@ class Mannequin:
 
     vertices (V, 3) float64 [m]; faces (F, 3) int32; heads (21, 3) [m], the joints at rest in the order of JOINTS;
     weights (V, 21), rows sum to 1; marks: named heights and points (3,) [m] of the T-pose; skin: how the surface goes
-    with its joints, one of SKINS.
+    with its joints, one of SKINS; pieces: of its cover, no part of a file.
     """
 
     name: str
@@ -52,6 +63,7 @@ class Mannequin:
     weights: np.ndarray
     marks: dict[str, np.ndarray]
     skin: str = "dual"
+    pieces: tuple[Piece, ...] = ()
 
     @property
     def skeleton(self) -> Skeleton:
@@ -63,11 +75,12 @@ class Mannequin:
         pose.check()
         return SKINS[self.skin](self.vertices, self.weights, self.skeleton, pose)
 
-    def feet(self) -> np.ndarray:
-        """Which vertices (V,) a low cloth shoe (履) covers: what goes with ankle and toes, up to the ankle's height."""
+    def worn(self) -> tuple[Piece, ...]:
+        """What it wears by itself: low cloth shoes (履) on what goes with ankle and toes, up to the ankle's height, and
+        its cover."""
         joints = [JOINTS.index(name) for name in ("ankle_l", "toe_l", "ankle_r", "toe_r")]
         low = self.vertices[:, 1] < self.heads[joints[0], 1] + SHOE
-        return low & (self.weights[:, joints].sum(1) > 0.5)
+        return Piece("shoes", SHOES, low & (self.weights[:, joints].sum(1) > 0.5)), *self.pieces
 
     def landmarks(self, pose: Pose = T_POSE) -> dict[str, np.ndarray]:
         """Points (3,) [m] of the posed figure by name: its joints, and its marks, which go with a joint each."""
@@ -109,7 +122,8 @@ class Mannequin:
 
     def digest(self) -> str:
         """A hash of the name and of everything that decides how the figure stands and moves."""
-        hashed = hashlib.sha256(repr((self.name, self.skin)).encode())
+        dyes = tuple((piece.name, piece.dye) for piece in self.pieces)
+        hashed = hashlib.sha256(repr((self.name, self.skin, *dyes)).encode())
         parts = {name: getattr(self, name) for name in ("vertices", "faces", "heads", "weights")} | {
             f"mark {name}": place for name, place in sorted(self.marks.items())
         }

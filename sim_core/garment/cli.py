@@ -255,7 +255,7 @@ def _write_model(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> Non
     if outfit.wearer is not None:
         worn = garments[-1]
         body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-        figure = shown_figure(*body, worn.positions, worn.faces, feet=outfit.wearer.feet())
+        figure = shown_figure(*body, worn.positions, worn.faces, worn=outfit.wearer.worn())
     clothed = [
         Clothed.woven(garment, loom=layer.loom)
         for garment, layer in zip(garments, outfit.layers, strict=True)
@@ -289,15 +289,19 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     """Everything from the front, from the side and from behind."""
     import numpy as np
 
-    from sim_core.garment.glb import LACQUER, LINEN, SHOE, Clothed
+    from sim_core.garment.glb import LACQUER, LINEN, Clothed
     from sim_core.picture import Camera, Fabric, Surface, render, save_png, split_along
     from sim_core.weave.maps import SHEER, coverage, seen_afar, srgb
 
     surfaces = []
     if outfit.wearer is not None:
         vertices, faces = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-        shod = outfit.wearer.feet()[faces].all(1)
-        surfaces += [Surface(vertices, faces[~shod], LINEN), Surface(vertices, faces[shod], SHOE)]
+        bare = np.ones(len(faces), bool)
+        for piece in outfit.wearer.worn():
+            own = piece.vertices[faces].all(1)
+            surfaces.append(Surface(vertices, faces[own], piece.dye))
+            bare &= ~own
+        surfaces.append(Surface(vertices, faces[bare], LINEN))
     if outfit.stand is not None:
         surfaces.append(Surface(*outfit.stand.mesh(), LACQUER, gloss=0.25))
     for garment, layer in zip(garments, outfit.layers, strict=True):

@@ -37,22 +37,30 @@ from sim_core.weave.maps import (
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
-SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 2048  # a side, of the textures that every telephone has
 CELL_QUALITY, FIGURE_QUALITY = 82, 88  # JPEG
 
 
 @dataclass(frozen=True)
+class Part:
+    """What a figure wears by itself: its name, its colour (sRGB), and which of the faces (F,) bool it is."""
+
+    name: str
+    dye: Colour
+    faces: np.ndarray
+
+
+@dataclass(frozen=True)
 class Shown:
     """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m];
-    shod (F,): the faces of its shoes, none where it is left out."""
+    worn: what it wears by itself."""
 
     vertices: np.ndarray
     faces: np.ndarray
     normals: np.ndarray
     base: tuple[float, float]
-    shod: np.ndarray | None = None
+    worn: tuple[Part, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,13 +124,15 @@ def write_glb(
         vertices, faces = outermost.settled.beneath.stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
     if figure is not None:
-        shod = np.zeros(len(figure.faces), bool) if figure.shod is None else figure.shod
-        for name, own, look in (("figure", ~shod, _linen), ("shoes", shod, _shoe)):
+        bare = ~np.any([np.zeros(len(figure.faces), bool), *(part.faces for part in figure.worn)], axis=0)
+        looks = [("figure", bare, _plain("linen", LINEN, 0.9))]  # matt, light, without colour of its own
+        looks += [(part.name, part.faces, _plain(part.name, part.dye, 0.6)) for part in figure.worn]
+        for name, own, look in looks:
             if own.any():
                 used, index = np.unique(figure.faces[own], return_inverse=True)
                 faces = index.reshape(-1, 3).astype(np.int32)
                 shading = figure.normals[used]
-                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(look()), shading=shading)
+                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(look), shading=shading)
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
@@ -201,16 +211,6 @@ def _plain(name: str, colour: Colour, roughness: float) -> dict[str, Any]:
             "roughnessFactor": roughness,
         },
     }
-
-
-def _linen() -> dict[str, Any]:
-    """The figure's cover: matt, light, without colour of its own."""
-    return _plain("linen", LINEN, 0.9)
-
-
-def _shoe() -> dict[str, Any]:
-    """Low shoes of dark silk."""
-    return _plain("shoe", SHOE, 0.6)
 
 
 def _lacquer() -> dict[str, Any]:

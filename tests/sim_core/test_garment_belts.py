@@ -124,6 +124,18 @@ def test_a_belt_is_drawn_to_its_length_and_holds(tmp_path: Path) -> None:
     assert ring(replace(robe, positions=after.positions)) == pytest.approx(0.80, rel=0.02)
 
 
+@pytest.mark.slow
+def test_what_lies_under_a_belt_is_held_there(tmp_path: Path) -> None:
+    (robe,) = dress(of(tmp_path, close=BELT + '[[layer.step]]\ndo = "pin"\nat = ["belt"]\n'))
+    assert clear(robe)
+    assert robe.settled is not None
+    under = np.unique(robe.settled.holds.pairs)
+    assert set(robe.settled.last.pins) == set(under)
+    after = follow(robe, seconds=0.2).positions
+    assert np.array_equal(after[under], robe.positions[under])
+    assert not np.array_equal(after, robe.positions)
+
+
 def test_a_belt_shorter_than_the_wearer_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         SimCoreError,

@@ -245,6 +245,10 @@ BAD = {
         ROBE + '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n[[layer.step]]\ndo = "release"\nat = ["top"]\n',
         "layer.1.step.2.at: it is not pinned",
     ),
+    "held by a belt that is not drawn": (
+        ROBE + '[[layer.step]]\ndo = "pin"\nat = ["belt"]\n',
+        "layer.1.step.1.at: no belt is drawn before",
+    ),
     "twice": (ROBE + ROBE.split("\n", 2)[2], "layer.2.name: 'robe' is there twice"),
     "two on a stand": (SCARF + SCARF.split("\n", 2)[2], "layer.2: a stand bears one layer"),
     "two in one place": (

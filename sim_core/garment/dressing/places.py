@@ -26,16 +26,20 @@ APART = 1.5  # mesh steps between two points of a belt
 
 @dataclass(frozen=True)
 class Places:
-    """cut: the pattern's own cloth, one half of a mirrored one; cloth: what is dressed; sheet: as it is simulated."""
+    """cut: the pattern's own cloth, one half of a mirrored one; cloth: what is dressed; sheet: as it is simulated;
+    belted: vertices that belts go over which are laid already."""
 
     layer: Layer
     cut: Cloth
     cloth: Cloth
     sheet: SewnSheet
+    belted: tuple[int, ...] = ()
 
     def vertices(self, what: Spot | str) -> tuple[int, ...]:
         """Vertices of the sheet that a pin holds: the nearest to its place and their neighbours, the
-        whole top edge, or its points on the middle, x = 0."""
+        whole top edge, its points on the middle, x = 0, or what lies under belts."""
+        if what == "belt":
+            return self.belted
         if what == "top":
             return tuple(int(k) for k in np.unique(self.sheet.number[self._top()]))
         if what == "middle":

@@ -82,8 +82,8 @@ class Runs:
                 )
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
-            places = self.places(sheet)
             self._lay_belts(course, sheet, x)
+            places = self.places(sheet)
             worn = self.wearing.outfit.wearer is not None
             phases = [timed.phase(places.vertices, moving=worn) for timed in course.steps]
             done.append(
@@ -104,7 +104,8 @@ class Runs:
 
     def places(self, sheet: SewnSheet) -> Places:
         """Which vertices of a sheet are meant."""
-        return Places(self.layer, self.cut, self.cloth, sheet)
+        belted = {int(k) for pairs, _ in self.belts.values() for k in pairs.ravel()}
+        return Places(self.layer, self.cut, self.cloth, sheet, tuple(sorted(belted)))
 
     def contact(self, course: Course) -> Contact:
         """How it touches; over a round bar further off, so that the chords of the mesh keep clear of it, too."""

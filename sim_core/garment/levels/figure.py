@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim_core.garment.glb import Shown
+from sim_core.body.mannequin import Piece
+from sim_core.garment.glb import Part, Shown
 from sim_core.garment.levels.thinning import Thinning
 from sim_core.picture import fan, normals
 from sim_core.picture.raster import seen_from
@@ -35,25 +36,32 @@ def shown_figure(
     triangles: int | None = None,
     rings: int = 2,
     moments: Sequence[tuple[np.ndarray, np.ndarray]] = (),
-    feet: np.ndarray | None = None,
+    worn: Sequence[Piece] = (),
 ) -> Shown:
     """The visible part of a figure with `rings` of faces around it.
 
     triangles: thinned to that many (None: all are kept). Normals are the fine figure's. moments: where figure and cloth
-    are at other times, vertices (V, 3) and (C, 3) [m] each: what is seen then is shown, too. feet (V,): what
-    shoes cover.
+    are at other times, vertices (V, 3) and (C, 3) [m] each: what is seen then is shown, too. worn: what the figure
+    wears by itself.
     """
     visible = seen(vertices, cloth, cloth_faces, faces)
-    for figure, worn in moments:
-        visible |= seen(figure, worn, cloth_faces, faces)
+    for figure, dress in moments:
+        visible |= seen(figure, dress, cloth_faces, faces)
     for _ in range(rings):
         visible[faces[visible[faces].any(1)]] = True
     kept = faces[visible[faces].all(1)]
     shading = normals(vertices, faces)
+    piece = np.zeros(len(kept), int)
+    for number, one in enumerate(worn, 1):
+        piece[one.vertices[kept].all(1)] = number
     if triangles is not None:
-        mesh = Thinning(vertices, kept, np.arange(len(vertices)))
+        # Edges of what it wears keep their lines, as seams do: there each side has a twin of its own.
+        twins, corners = np.unique(
+            np.column_stack([kept.ravel(), np.repeat(piece, 3)]), axis=0, return_inverse=True
+        )
+        mesh = Thinning(vertices, corners.reshape(-1, 3), twins[:, 0])
         mesh.to(triangles)
-        kept = mesh.faces()
+        kept, piece = twins[mesh.faces(), 0], piece[mesh.numbers()]
     used, index = np.unique(kept, return_inverse=True)
-    shod = None if feet is None else np.asarray(feet[kept].all(1))
-    return Shown(vertices[used], index.reshape(-1, 3).astype(np.int32), shading[used], BASE, shod)
+    parts = tuple(Part(one.name, one.dye, piece == number) for number, one in enumerate(worn, 1))
+    return Shown(vertices[used], index.reshape(-1, 3).astype(np.int32), shading[used], BASE, parts)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from sim_core.body import Figure, Mannequin, Pose, Stand, TBar, load_motion, pose_named
+from sim_core.body import Cover, Figure, Mannequin, Pose, Stand, TBar, covered, load_motion, pose_named
 from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
@@ -28,7 +28,7 @@ from sim_core.garment.outfit.tables import (
     StepTable,
 )
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.pattern.tables import CutProblem, read_spot
+from sim_core.garment.pattern.tables import CutProblem, read_dye, read_spot
 from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Upright, Wrapped
 from sim_core.validation.files import read_toml, shown
 from sim_core.weave import Loom, Weave
@@ -81,9 +81,9 @@ class _Reader:
             raise self._wrong(
                 "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
             )
-        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer), read.size)
+        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer), read)
         stand = None if read.stand is None else self._stand(read.stand)
-        for key in ("pose", "size", "motion"):
+        for key in ("pose", "size", "cover", "motion"):
             if stand is not None and key in read.model_fields_set:
                 raise self._wrong(key, "a stand has none – leave it out")
         pose = self.pose("pose", read.pose) if wearer is not None else T_POSE
@@ -143,9 +143,14 @@ class _Reader:
                         f"no landmark {shown(step.belt.mark)} – landmarks: {', '.join(known) or 'none on a stand'}",
                     )
 
-    def _wearer(self, file: Path, size: float) -> Mannequin:
+    def _wearer(self, file: Path, read: OutfitTable) -> Mannequin:
         """A figure that cloth can lie on: closed, with hands."""
-        wearer = Mannequin.load(file).sized(size)
+        wearer = Mannequin.load(file).sized(read.size)
+        if read.cover is not None:
+            dyes = Cover(*(read_dye(dye) for dye in (read.cover.bodice, read.cover.trousers)))
+            if dyes == Cover():
+                raise self._wrong("cover", "nothing of it has a colour – give bodice, trousers or both")
+            wearer = covered(wearer, dyes)
         try:
             Figure(wearer, cell=LOOK).field(T_POSE)
         except SimCoreError as error:
@@ -291,7 +296,7 @@ def _metres(place: tuple[float, float]) -> tuple[float, float]:
 
 def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:
     """Steps that cannot follow each other: refused before anything runs."""
-    welded, pinned = False, []
+    welded, belted, pinned = False, False, []
     sewn = any(seam.kind == "sewn" for seam in pattern.seams)
     for number, step in enumerate(steps, 1):
         told = f"{key}.{step.named(number)}"
@@ -310,7 +315,10 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
             if any(spot not in pinned for spot in step.spots):
                 raise reader._wrong(f"{told}.at", "it is not pinned – pin it before, or leave it out")
             pinned = [spot for spot in pinned if step.spots and spot not in step.spots]
+        belted = belted or step.belt is not None
         if step.do == "pin":
+            if "belt" in step.spots and not belted:
+                raise reader._wrong(f"{told}.at", "no belt is drawn before – close with a belt first")
             pinned += step.spots
     if sewn and not welded:
         raise reader._wrong(f"{key}.step", "the pattern has sewn seams and no step welds them – add one")

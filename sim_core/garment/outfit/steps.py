@@ -66,7 +66,7 @@ class Step:
     friction: float | None = None
     speed: float | None = None
     still: float | None = None
-    spots: tuple[Spot | Literal["nape", "top", "middle"], ...] = ()
+    spots: tuple[Spot | Literal["nape", "top", "middle", "belt"], ...] = ()
     ties: tuple[str, ...] = ()
     belt: Belt | None = None
     pose: Pose | None = None

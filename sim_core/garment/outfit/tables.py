@@ -73,8 +73,8 @@ class StepTable(Table):
     still: Number | None = Field(
         None, gt=0, le=1, description="[m] a frame (p99) at which the step ends early"
     )
-    at: list[Literal["nape", "top", "middle"] | SpotTable] = Field(
-        [], description="what is pinned: nape, top, its middle or places"
+    at: list[Literal["nape", "top", "middle", "belt"] | SpotTable] = Field(
+        [], description="what is pinned: nape, top, its middle, what lies under a belt, or places"
     )
     ties: list[str] = Field([], description="which ties are closed; none named: all")
     belt: BeltTable | None = Field(None, description="a belt that is drawn to its length")
@@ -213,11 +213,21 @@ class StandTable(Table):
     bar_radius: Number | None = Field(None, ge=0.002, le=0.08, description="[m]")
 
 
+class CoverTable(Table):
+    bodice: Colour | None = Field(
+        None, description="colour of one (抹胸) from the breast to the hips; left out: none"
+    )
+    trousers: Colour | None = Field(None, description="colour of trousers (裤) to the ankles; left out: none")
+
+
 class OutfitTable(Table):
     name: Name | None = None
     title: Words = {}
     wearer: str | None = Field(None, description="figure file, e.g. mannequins/woman.npz")
     size: Number = Field(1.0, ge=0.5, le=2.0, description="how many times as tall the figure is")
+    cover: CoverTable | None = Field(
+        None, description="what the figure wears next to its skin, and what goes with it when it moves"
+    )
     stand: StandTable | None = None
     pose: PoseTable | None = Field(None, description="name of a pose, or { name, joints, shift }")
     motion: str | None = Field(
