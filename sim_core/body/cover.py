@@ -20,11 +20,11 @@ __all__ = ["Cover", "covered"]
 TOP = 0.030  # [m] above the bust that a bodice (抹胸) begins
 OVER = 0.055  # [m] above the hips that it ends, over the trousers
 HEM = 0.030  # [m] above the ankles that trousers end
-EASE, OUTER = 0.005, 0.008  # [m] off the skin: of what is worn next to it, and of what is worn over that
-EDGE = 0.004  # [m] within which an edge rises from the skin
-WIDE = (0.060, 0.070)  # [m] half a trouser leg at least, at its hem and at the knee
+EASE, OUTER = 0.0005, 0.001  # [m] off the skin: of what is worn next to it, and of what is worn over that
+EDGE = 0.001  # [m] within which an edge rises from the skin
+WIDE = (0.056, 0.062)  # [m] half a trouser leg at least, at its hem and at the knee
 FORK = (0.11, -0.03)  # [m] below and above the crotch between which a leg becomes the trunk
-NEAR = 0.0015  # [m] from a line that a vertex is moved onto it
+NEAR = 0.0004  # [m] from a line that a vertex is moved onto it
 ALIKE = 1e-6  # [m] from the mirror image of another vertex
 STEP = 0.01  # [m] between sections of a leg
 
@@ -45,7 +45,9 @@ def covered(figure: Mannequin, cover: Cover) -> Mannequin:
     hem = float(figure.heads[JOINTS.index("ankle_l"), 1]) + HEM
     lines = [top, top - EDGE, over, over + EDGE] if cover.bodice else []
     lines += [hem, hem + EDGE] + ([] if cover.bodice else [waist, waist - EDGE]) if cover.trousers else []
-    figure = _evened(figure)
+    figure = _cut(
+        _evened(figure), 0.0, axis=0
+    )  # no face is its own mirror image: it would be cut one way round
     for line in lines:
         figure = _cut(figure, line)
     y, body = figure.vertices[:, 1], _body(figure)
@@ -142,7 +144,7 @@ def _evened(figure: Mannequin) -> Mannequin:
     kept = np.delete(faces, own.ravel(), axis=0)
     return replace(
         figure,
-        vertices=np.concatenate([figure.vertices, figure.vertices[corners].mean(1)]),
+        vertices=np.concatenate([figure.vertices, figure.vertices[corners].mean(1) * [0.0, 1.0, 1.0]]),
         weights=np.concatenate([figure.weights, figure.weights[corners].mean(1)]),
         faces=np.concatenate([kept, *new]).astype(np.int32),
     )
@@ -159,15 +161,16 @@ def _mirrored(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     return 0.5 * (after + after[twin] * [-1.0, 1.0, 1.0]) if away.max() < ALIKE else after
 
 
-def _cut(figure: Mannequin, height: float) -> Mannequin:
-    """The figure with vertices wherever the surface of trunk and legs passes a height [m]; the surface stays."""
+def _cut(figure: Mannequin, at: float, axis: int = 1) -> Mannequin:
+    """The figure with vertices wherever the surface of trunk and legs passes `at` [m] on an axis; the surface stays."""
     x, faces = figure.vertices.copy(), figure.faces
     body = _body(figure)
-    x[body & (np.abs(x[:, 1] - height) < NEAR), 1] = height
-    side = np.where(body, np.sign(x[:, 1] - height), 0.0)
+    if axis == 1:  # beside the middle a vertex would come to lie on its own mirror image
+        x[body & (np.abs(x[:, 1] - at) < NEAR), 1] = at
+    side = np.where(body, np.sign(x[:, axis] - at), 0.0)
     ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     ends = np.unique(ends[side[ends[:, 0]] * side[ends[:, 1]] < 0], axis=0)
-    share = (height - x[ends[:, 0], 1]) / (x[ends[:, 1], 1] - x[ends[:, 0], 1])
+    share = (at - x[ends[:, 0], axis]) / (x[ends[:, 1], axis] - x[ends[:, 0], axis])
     number = {(int(a), int(b)): len(x) + k for k, (a, b) in enumerate(ends)}
 
     def between(values: np.ndarray) -> np.ndarray:
@@ -175,7 +178,7 @@ def _cut(figure: Mannequin, height: float) -> Mannequin:
         return np.concatenate([values, mixed])
 
     x = between(x)
-    x[len(figure.vertices) :, 1] = height
+    x[len(figure.vertices) :, axis] = at
     crossed = (side[faces] * side[np.roll(faces, -1, axis=1)] < 0).any(1)
     new = [_parted(tuple(int(k) for k in face), number, x) for face in faces[crossed]]
     rest = np.concatenate([faces[~crossed], *new]) if new else faces
