@@ -45,9 +45,8 @@ def covered(figure: Mannequin, cover: Cover) -> Mannequin:
     hem = float(figure.heads[JOINTS.index("ankle_l"), 1]) + HEM
     lines = [top, top - EDGE, over, over + EDGE] if cover.bodice else []
     lines += [hem, hem + EDGE] + ([] if cover.bodice else [waist, waist - EDGE]) if cover.trousers else []
-    figure = _cut(
-        _evened(figure), 0.0, axis=0
-    )  # no face is its own mirror image: it would be cut one way round
+    # No face is its own mirror image: it would be cut one way round.
+    figure = _cut(_evened(figure), 0.0, axis=0)
     for line in lines:
         figure = _cut(figure, line)
     y, body = figure.vertices[:, 1], _body(figure)
@@ -152,7 +151,8 @@ def _evened(figure: Mannequin) -> Mannequin:
 
 def _twins(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distances (V,) [m] of the mirror images of vertices (V, 3) from the nearest vertex, and which (V,) that is."""
-    return KDTree(x).query(x * [-1.0, 1.0, 1.0])
+    away, nearest = KDTree(x).query(x * [-1.0, 1.0, 1.0])
+    return np.asarray(away), np.asarray(nearest)
 
 
 def _mirrored(before: np.ndarray, after: np.ndarray) -> np.ndarray:
