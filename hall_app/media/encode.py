@@ -9,7 +9,7 @@ import numpy as np
 
 from hall_app.media.strings import RATE
 
-CODECS = {".webm": ("libopus", 56_000), ".mp3": ("libmp3lame", 80_000)}
+CODECS = {".webm": ("libopus", 40_000), ".mp3": ("libmp3lame", 56_000)}
 PIECES = {
     "libopus": ("flt", 960),
     "libmp3lame": ("fltp", 1152),
