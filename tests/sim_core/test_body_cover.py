@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.body import Cover, Figure, Mannequin, covered, load_motion, pose_named
+from sim_core.body import Cover, Figure, Loop, Mannequin, covered, load_motion, pose_named
 from sim_core.body.motion import clearances
 from sim_core.errors import FileProblem
 from sim_core.garment import load_outfit
@@ -71,6 +71,7 @@ def test_pieces_have_level_edges(figure: Mannequin, name: str) -> None:
 
 def test_trousers_leave_the_legs_room_to_walk(figure: Mannequin) -> None:
     walk = load_motion(ASSETS / "motions" / "walk.toml")
+    assert isinstance(walk, Loop)
     worn = covered(figure, COVERS["both"])
     near = clearances(worn, walk.poses(worn, rate=25)[::14]).least
     assert near["left leg – right leg"] > 0.02
