@@ -192,13 +192,9 @@ class Wardrobe:
         radius, lift = BASE
         vertices = self.outfit.wearer.posed(self.outfit.pose)
         disc, around = solid_mesh(Cylinder((0, 0, 0), (0, lift, 0), radius, 0.4 * lift), 48)
-        faces, skin = self.outfit.wearer.faces, list[Part]()
-        bare = np.ones(len(faces), bool)
-        for worn in self.outfit.wearer.worn():
-            own = worn.vertices[faces].all(1)
-            skin.append(Part(faces[own], worn.dye, gloss=0.1))
-            bare &= ~own
-        body = Piece(vertices, (Part(faces[bare], LINEN, gloss=0.05), *skin), lift)
+        wearer, faces = self.outfit.wearer, self.outfit.wearer.faces
+        worn = [Part(faces[piece.faces(faces)], piece.dye, gloss=0.1) for piece in wearer.worn()]
+        body = Piece(vertices, (Part(faces[wearer.bare()], LINEN, gloss=0.05), *worn), lift)
         base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
         raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
         return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)

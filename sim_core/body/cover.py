@@ -49,7 +49,7 @@ def covered(figure: Mannequin, cover: Cover) -> Mannequin:
     figure = _cut(_evened(figure), 0.0, axis=0)
     for line in lines:
         figure = _cut(figure, line)
-    y, body = figure.vertices[:, 1], _body(figure)
+    y, body = figure.vertices[:, 1], figure.trunk()
     pieces, off = list[Piece](), np.zeros(len(y))
     x = figure.vertices.copy()
     if cover.trousers:
@@ -76,19 +76,13 @@ def _rises(way: np.ndarray) -> np.ndarray:
     return np.clip(way / EDGE, 0.0, 1.0)
 
 
-def _body(figure: Mannequin) -> np.ndarray:
-    """Vertices (V,) bool of trunk and legs."""
-    arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
-    return figure.weights[:, arms].sum(1) < 0.5
-
-
 def _hanging(figure: Mannequin, hem: float) -> np.ndarray:
     """How far (V, 2) [m], along x and z, trouser legs hang off the legs' skin: nowhere slimmer than WIDE."""
     fork, knee = float(figure.marks["crotch"][1]), float(figure.heads[JOINTS.index("knee_l"), 1])
     x, out = figure.vertices, np.zeros((len(figure.vertices), 2))
     heights = np.arange(hem - STEP, fork + STEP, STEP)
     for side in (1.0, -1.0):
-        leg = (side * x[:, 0] > 0) & _body(figure) & (x[:, 1] > hem - 2 * STEP) & (x[:, 1] < fork + 2 * STEP)
+        leg = (side * x[:, 0] > 0) & figure.trunk() & (x[:, 1] > hem - 2 * STEP) & (x[:, 1] < fork + 2 * STEP)
         middle, half = _sections(x[leg], heights)
         at = np.column_stack([np.interp(x[leg, 1], heights, column) for column in (*middle.T, *half.T)])
         wide = np.interp(x[leg, 1], [hem, knee], WIDE)[:, None]
@@ -123,7 +117,7 @@ def _evened(figure: Mannequin) -> Mannequin:
     """The figure with a point in every pair of faces across the middle that go the other way round in the mirror."""
     away, twin = _twins(figure.vertices)
     faces = figure.faces
-    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    edges = _edges(faces)
     there = {(int(a), int(b)) for a, b in edges}
     if away.max() > ALIKE:
         return figure
@@ -149,6 +143,11 @@ def _evened(figure: Mannequin) -> Mannequin:
     )
 
 
+def _edges(faces: np.ndarray) -> np.ndarray:
+    """The three edges (3 F, 2) of every face, one face after another, the lower vertex first."""
+    return np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+
+
 def _twins(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distances (V,) [m] of the mirror images of vertices (V, 3) from the nearest vertex, and which (V,) that is."""
     away, nearest = KDTree(x).query(x * [-1.0, 1.0, 1.0])
@@ -164,11 +163,11 @@ def _mirrored(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 def _cut(figure: Mannequin, at: float, axis: int = 1) -> Mannequin:
     """The figure with vertices wherever the surface of trunk and legs passes `at` [m] on an axis; the surface stays."""
     x, faces = figure.vertices.copy(), figure.faces
-    body = _body(figure)
+    body = figure.trunk()
     if axis == 1:  # beside the middle a vertex would come to lie on its own mirror image
         x[body & (np.abs(x[:, 1] - at) < NEAR), 1] = at
     side = np.where(body, np.sign(x[:, axis] - at), 0.0)
-    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    ends = _edges(faces)
     ends = np.unique(ends[side[ends[:, 0]] * side[ends[:, 1]] < 0], axis=0)
     share = (at - x[ends[:, 0], axis]) / (x[ends[:, 1], axis] - x[ends[:, 0], axis])
     number = {(int(a), int(b)): len(x) + k for k, (a, b) in enumerate(ends)}

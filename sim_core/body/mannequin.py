@@ -46,6 +46,10 @@ class Piece:
     dye: Colour
     vertices: np.ndarray
 
+    def faces(self, faces: np.ndarray) -> np.ndarray:
+        """Which of some faces (F, 3) are covered, (F,) bool."""
+        return np.asarray(self.vertices[faces].all(1))
+
 
 @dataclass(frozen=True)
 class Mannequin:
@@ -81,6 +85,15 @@ class Mannequin:
         joints = [JOINTS.index(name) for name in ("ankle_l", "toe_l", "ankle_r", "toe_r")]
         low = self.vertices[:, 1] < self.heads[joints[0], 1] + SHOE
         return Piece("shoes", SHOES, low & (self.weights[:, joints].sum(1) > 0.5)), *self.pieces
+
+    def bare(self) -> np.ndarray:
+        """Which faces (F,) nothing that it wears by itself covers."""
+        return ~np.any([piece.faces(self.faces) for piece in self.worn()], axis=0)
+
+    def trunk(self) -> np.ndarray:
+        """Which vertices (V,) are not of the arms."""
+        arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
+        return self.weights[:, arms].sum(1) < 0.5
 
     def landmarks(self, pose: Pose = T_POSE) -> dict[str, np.ndarray]:
         """Points (3,) [m] of the posed figure by name: its joints, and its marks, which go with a joint each."""

@@ -51,8 +51,7 @@ class Figure:
 
     def trunk(self) -> np.ndarray:
         """Vertices (T,) that are not of the arms: what a skirt goes round."""
-        arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
-        return np.flatnonzero(self.mannequin.weights[:, arms].sum(1) < 0.5)
+        return np.flatnonzero(self.mannequin.trunk())
 
     def middle(self, pose: Pose, height: float) -> np.ndarray:
         """x and z (2,) [m] of the trunk's middle at a height [m], or at the next height where it has one."""

@@ -296,12 +296,9 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     surfaces = []
     if outfit.wearer is not None:
         vertices, faces = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-        bare = np.ones(len(faces), bool)
+        surfaces.append(Surface(vertices, faces[outfit.wearer.bare()], LINEN))
         for piece in outfit.wearer.worn():
-            own = piece.vertices[faces].all(1)
-            surfaces.append(Surface(vertices, faces[own], piece.dye))
-            bare &= ~own
-        surfaces.append(Surface(vertices, faces[bare], LINEN))
+            surfaces.append(Surface(vertices, faces[piece.faces(faces)], piece.dye))
     if outfit.stand is not None:
         surfaces.append(Surface(*outfit.stand.mesh(), LACQUER, gloss=0.25))
     for garment, layer in zip(garments, outfit.layers, strict=True):

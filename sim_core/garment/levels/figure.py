@@ -53,7 +53,7 @@ def shown_figure(
     shading = normals(vertices, faces)
     piece = np.zeros(len(kept), int)
     for number, one in enumerate(worn, 1):
-        piece[one.vertices[kept].all(1)] = number
+        piece[one.faces(kept)] = number
     if triangles is not None:
         # Edges of what it wears keep their lines, as seams do: there each side has a twin of its own.
         twins, corners = np.unique(
