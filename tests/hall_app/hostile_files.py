@@ -26,6 +26,19 @@ def picture(kind: str, size: tuple[int, int] = (8, 8), **more: object) -> bytes:
     return data.getvalue()
 
 
+def drawing(inside: bytes, root: bytes = b"svg") -> bytes:
+    told = b' xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
+    return b"<" + root + told + inside + b"<!-- <svg --></" + root + b">"
+
+
+def doubled(times: int) -> bytes:
+    """Few bytes that draw one path 2^times times."""
+    levels = [b'<path id="u0" d="M0 0h9"/>']
+    for n in range(1, times + 1):
+        levels.append(b'<g id="u%d"><use href="#u%d"/><use href="#u%d"/></g>' % (n, n - 1, n - 1))
+    return b"".join(levels)
+
+
 def zipped(inside: bytes) -> bytes:
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -90,6 +103,18 @@ def hostile_files() -> list[tuple[str, bytes, str]]:
         ("drawing.png", SVG, "picture"),
         ("drawing.jpg", b"<?xml version='1.0'?>" + SVG, "picture"),
         ("entity.svg", b'<!DOCTYPE x [<!ENTITY a "aaaa">]>' + SVG, "picture"),
+        ("address.svg", drawing(b'<image href="http://x/y.png"/><use href="https://x/#y"/>'), "picture"),
+        (
+            "frame.svg",
+            drawing(b"<foreignObject><iframe xmlns='http://www.w3.org/1999/xhtml'/></foreignObject>"),
+            "picture",
+        ),
+        ("sheet.svg", drawing(b"<style>@import 'http://x';*{fill:u\\72l(http://x)}</style>"), "picture"),
+        ("uses.svg", drawing(doubled(40)), "picture"),
+        ("circle.svg", drawing(b'<g id="a"><use href="#a"/></g>'), "picture"),
+        ("deep.svg", drawing(b"<g>" * 100_000 + b"</g>" * 100_000), "picture"),
+        ("page.svg", drawing(b"", root=b"html"), "picture"),
+        ("model.svg", drawing(b"<path d='M0 0'/>"), "hall"),
         ("tail.jpg", jpeg + HTML, "picture"),
         ("comment.jpg", picture("JPEG", comment=HTML), "picture"),
         ("tail.png", png + HTML, "picture"),

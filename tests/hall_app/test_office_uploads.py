@@ -23,7 +23,16 @@ from hall_app.house.drafts import beside
 from hall_app.house.people import Role
 from hall_app.web import create_app
 
-SHOWN = {"image/jpeg", "image/png", "image/webp", "video/mp4", "audio/mpeg", "audio/ogg", "model/gltf-binary"}
+SHOWN = {
+    "image/jpeg",
+    "image/png",
+    "image/webp",
+    "image/svg+xml",
+    "video/mp4",
+    "audio/mpeg",
+    "audio/ogg",
+    "model/gltf-binary",
+}
 NAMES = [f"{number}-{use}" for number, (_, _, use) in enumerate(hostile_files())]
 
 

@@ -1,6 +1,6 @@
 """What is brought from outside: known by what it holds and never by its name, limited, pictures drawn anew.
 
-Film and sound are decoded, and kept without their metadata (`recording`).
+Drawings are written anew (`drawing`). Film and sound are decoded, and kept without their metadata (`recording`).
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import BinaryIO
 
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.house.beside import beside
+from hall_app.house.drafts.drawing import redrawn
 from hall_app.house.people import PeopleError
 from hall_app.house.recording import Refused, keep
 
@@ -26,6 +27,7 @@ __all__ = ["LARGEST", "USES", "Taken", "take_in"]
 MB = 1_000_000
 LARGEST: Mapping[str, int] = {
     "picture": 40 * MB,
+    "drawing": 4 * MB,  # as SVG, which every visitor's browser draws
     "model": 15 * MB,
     "scan": 200 * MB,
     "film": 10 * MB,
@@ -83,7 +85,11 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     file.seek(0)
     data = file.read(LARGEST[kind] + 1)
     told = ""
-    if kind == "picture":
+    if ending == ".svg":
+        if size > LARGEST["drawing"]:
+            raise PeopleError("file-size", name=shown, kind="drawing", most=LARGEST["drawing"] // MB)
+        data, told = redrawn(shown, data, _picture)
+    elif kind == "picture":
         data, ending, told = _picture(shown, data)
     elif ending == ".glb":
         told = _model(shown, data)
@@ -116,7 +122,7 @@ def _kind(shown: str, head: bytes, use: str) -> tuple[str, str]:
     if head.startswith(_ARCHIVES):
         raise PeopleError("file-archive", name=shown)
     if b"<svg" in head.lower():
-        raise PeopleError("file-svg", name=shown)
+        return "picture", ".svg"
     lines = head.split(b"\n")[:-1] if len(head) == 4096 else head.split(b"\n")
     if use == "scan" and any(line.startswith(b"v ") for line in lines) and all(map(_OBJ.fullmatch, lines)):
         return "scan", ".obj"

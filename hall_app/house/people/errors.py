@@ -244,16 +244,21 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} is too large: a {kind} has {most} MB at most. Make it smaller and send it again.",
     ),
     "file-kind": (
-        "{name}：无法识别内容。可用 JPEG、PNG、WebP、TIFF，GLB、PLY、OBJ，WebM、MP4、Ogg、MP3、WAV。",
-        "{name}: its content is none of JPEG, PNG, WebP, TIFF; GLB, PLY, OBJ; WebM, MP4, Ogg, MP3, WAV.",
+        "{name}：无法识别内容。可用 JPEG、PNG、WebP、TIFF、SVG，GLB、PLY、OBJ，WebM、MP4、Ogg、MP3、WAV。",
+        "{name}: its content is none of JPEG, PNG, WebP, TIFF, SVG; GLB, PLY, OBJ; WebM, MP4, Ogg, MP3, WAV.",
     ),
     "file-use": (
         "{name} 的内容是{kind}，不能用于此处，请换一项用途。",
         "{name} holds a {kind}, which cannot be used for this: choose another use.",
     ),
     "file-svg": (
-        "{name} 是 SVG，可能含有程序；请导出为 PNG。",
-        "{name} is an SVG, which may hold programs: export it as PNG.",
+        "{name} 含有 XML 实体，可能无限展开；请导出为普通 SVG（Plain SVG）。",
+        "{name} declares XML entities, which may unfold without end: export it as plain SVG.",
+    ),
+    "file-svg-drawn": (
+        "{name} 过于复杂：元素过多、嵌套过深、互相引用，或内嵌图片过多；请简化，或导出为 PNG。",
+        "{name} draws too much: too many elements, nested too deeply, referring to each other in a circle, or too many "
+        "pictures within. Make it simpler, or export it as PNG.",
     ),
     "file-archive": (
         "{name} 是压缩包，请解压后逐个上传。",
@@ -345,6 +350,7 @@ _MISSING = frozenset(
 
 _KINDS: Mapping[str, str] = {
     "picture": "图片",
+    "drawing": "线图（SVG）",
     "model": "模型",
     "scan": "扫描",
     "film": "影片",

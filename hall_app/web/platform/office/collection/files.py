@@ -220,13 +220,14 @@ def _upload_form(asking: Asking, key: str) -> str:
     }
     most = {kind: size // 1_000_000 for kind, size in LARGEST.items()}
     hint = word(
-        "按内容辨认；图片重新编码，影片与声音经解码检查，必要时转换；附带信息（地点、相机）一律去除。SVG 与压缩包不收。"
-        f"上限：图片 {most['picture']} MB、模型 {most['model']} MB、"
+        "按内容辨认；图片重新编码，影片与声音经解码检查，必要时转换；附带信息（地点、相机）一律去除；"
+        "SVG 只留下会画出来的部分。压缩包不收。"
+        f"上限：图片 {most['picture']} MB、SVG {most['drawing']} MB、模型 {most['model']} MB、"
         f"扫描 {most['scan']} MB、影片 {most['film']} MB、声音 {most['sound']} MB。",
         "Known by what they hold; pictures are drawn anew, film and sound decoded and, where browsers do not play "
-        "them, encoded again, all without what a camera wrote into them. No SVG, no archives. "
-        f"At most: pictures {most['picture']} MB, models {most['model']} MB, scans {most['scan']} MB, "
-        f"films {most['film']} MB, sound {most['sound']} MB.",
+        "them, encoded again, all without what a camera wrote into them; of an SVG stays what draws. No archives. "
+        f"At most: pictures {most['picture']} MB, SVG {most['drawing']} MB, models {most['model']} MB, "
+        f"scans {most['scan']} MB, films {most['film']} MB, sound {most['sound']} MB.",
     )
     large = word(
         f"扫描超过 {most['scan']} MB，或附有贴图、.mtl 文件的：请直接放入内容文件夹 exhibits/{key}/scan/，"

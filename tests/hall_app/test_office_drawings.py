@@ -1,0 +1,149 @@
+"""Drawings brought as SVG: what draws is kept to the letter, all else is left out, and little text draws little."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from hostile_files import doubled, drawing
+from PIL import Image
+
+from hall_app.content.models import picture_fault
+from hall_app.house.drafts import Taken, take_in
+from hall_app.house.people import PeopleError
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = sorted((*(ROOT / "assets").rglob("media/*.svg"), *(ROOT / "tests/sim_core/sheets").glob("*.svg")))
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def taken(data: bytes, use: str = "picture") -> Taken:
+    return take_in("sheet.svg", io.BytesIO(data), len(data), use)
+
+
+def kept(inside: str) -> tuple[str, str]:
+    """(what is kept within the root, what is told)."""
+    one = taken(drawing(inside.encode()))
+    return re.sub(r"^.*?<svg[^>]*>|</svg>$", "", one.data.decode(), flags=re.DOTALL), one.told
+
+
+def drawn_by(data: bytes) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:
+    """What draws in a tree, in order: element, plain attributes, text."""
+    found = []
+    for one in ElementTree.fromstring(data).iter():
+        if isinstance(one.tag, str) and one.tag.startswith(SVG) and one.tag != SVG + "metadata":
+            plain = tuple(sorted((k, v) for k, v in one.attrib.items() if "}" not in k and k != "type"))
+            found.append((one.tag, plain, (one.text or "").strip()))
+    return found
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=[f"{p.parents[1].name}-{p.name}" for p in SHIPPED])
+def test_an_honest_drawing_is_kept_to_the_letter(tmp_path, path):
+    one = taken(path.read_bytes())
+    assert (one.kind, one.name[-4:]) == ("picture", ".svg")
+    assert "−" not in one.told, "nothing was left out"
+    assert drawn_by(one.data) == drawn_by(path.read_bytes())
+    target = tmp_path / "kept.svg"
+    target.write_bytes(one.data)
+    assert picture_fault(target) is None
+    assert taken(one.data).data == one.data, "cleaned again it is the same"
+
+
+# What comes -> what of it is kept. A path draws all the while.
+LEFT_OUT = {
+    '<script>x()</script><path d="M0 0"/>': '<path d="M0 0" />',
+    '<path d="M0 0" onclick="x()" ONLOAD="x()"/>': '<path d="M0 0" />',
+    '<a href="javascript:x()"><path d="M0 0"/></a>': '<g><path d="M0 0" /></g>',
+    '<text>to <a href="http://x">here</a> and on</text>': "<text>to <tspan>here</tspan> and on</text>",
+    '<use href="other.svg#a"/>': "<use />",
+    '<path fill="url(http://x/#a)" d="M0 0"/>': '<path d="M0 0" />',
+    '<path style="fill:\\75rl(http://x)" d="M0 0"/>': '<path d="M0 0" />',
+    '<path style="fill:u/**/rl(http://x)" d="M0 0"/>': '<path d="M0 0" />',
+    '<path fill="url(#a)" d="M0 0"/>': '<path fill="url(#a)" d="M0 0" />',
+    "<style>@font-face{src:url(http://x)} .a{fill:red}</style>": "<style> .a{fill:red}</style>",
+    "<style>.a{fill:url(http://x)}</style>": "<style />",
+    "<animate attributeName='href' to='javascript:x()'/><path d='M0 0'/>": '<path d="M0 0" />',
+    '<filter id="f"><feImage href="http://x"/></filter><path filter="url(#f)" d="M0 0"/>': '<path d="M0 0" />',
+    '<image href="data:image/svg+xml;base64,PHN2Zy8+"/><path d="M0 0"/>': '<path d="M0 0" />',
+    '<e:note xmlns:e="urn:editor" e:by="me"/><path xmlns:e="urn:editor" e:at="home" d="M0 0"/>': '<path d="M0 0" />',
+}
+
+
+@pytest.mark.parametrize("inside", LEFT_OUT)
+def test_what_does_not_draw_is_left_out(inside):
+    assert kept(inside)[0] == LEFT_OUT[inside]
+
+
+def test_the_page_says_what_was_left_out():
+    assert kept("<script/><script/><path onclick='x()' d='M0 0'/>")[1] == "9 × 9 · − onclick 1, script 2"
+
+
+def test_a_picture_within_is_drawn_anew():
+    source = io.BytesIO()
+    Image.new("RGB", (20, 10), "#7a4b2e").save(source, "JPEG", comment=b"taken at home")
+    within = base64.b64encode(source.getvalue()).decode()
+    body, _ = kept(f'<image width="9" height="9" href="data:image/jpeg;base64,{within}"/>')
+    (found,) = re.findall(r"data:image/jpeg;base64,([^\"]+)", body)
+    again = base64.b64decode(found)
+    assert b"taken at home" in source.getvalue()
+    assert b"taken at home" not in again
+    assert Image.open(io.BytesIO(again)).size == (20, 10)
+
+
+ENDLESS = {
+    "uses of uses": doubled(40),
+    "a circle": b'<g id="a"><use href="#a"/></g>',
+    "patterns in patterns": b"".join(
+        b'<pattern id="p%d">%s</pattern>' % (n, b'<path fill="url(#p%d)" d="M0 0"/>' % (n + 1) * 20)
+        for n in range(8)
+    )
+    + b'<path fill="url(#p0)" d="M0 0"/>',
+    "masks by a sheet": b"<style>path{mask:url(#a)} rect{mask:url(#b)}</style>"
+    + b'<mask id="a">%s</mask><mask id="b">%s</mask>' % (b"<rect/>" * 99, b"<circle/>" * 99),
+    "a deep nest": b"<g>" * 9_000 + b"</g>" * 9_000,
+    "very many": b"<path/>" * 60_001,
+    "many pictures": b'<image href="data:image/png;base64,%s"/>'
+    % base64.b64encode((ROOT / "assets").glob("weaves/*.jpg").__next__().read_bytes())
+    * 9,
+}
+
+
+@pytest.mark.parametrize("case", ENDLESS)
+def test_little_text_does_not_draw_without_end(case):
+    with pytest.raises(PeopleError) as refused:
+        taken(drawing(ENDLESS[case]))
+    assert refused.value.key == "file-svg-drawn"
+
+
+REFUSED = {
+    "file-svg": b'<!DOCTYPE svg [<!ENTITY a "b">]>' + drawing(b"&a;"),
+    "file-broken": drawing(b"<path"),
+    "file-kind": drawing(b"<svg/>", root=b"html"),
+    "file-size": drawing(b" " * 4_000_001),
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_is_no_drawing_is_refused_with_a_reason(key):
+    with pytest.raises(PeopleError) as refused:
+        taken(REFUSED[key])
+    assert refused.value.key == key
+    for language in ("zh", "en"):
+        assert "sheet.svg" in refused.value.text(language)
+
+
+def test_a_drawing_is_no_model():
+    with pytest.raises(PeopleError) as refused:
+        taken(drawing(b"<path/>"), use="hall")
+    assert refused.value.key == "file-use"
+
+
+def test_a_plain_document_type_goes():
+    told = (
+        b'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">'
+    )
+    assert b"DOCTYPE" not in taken(told + drawing(b"<path/>")).data
