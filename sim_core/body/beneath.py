@@ -9,7 +9,7 @@ import numpy as np
 
 from sim_core.body.stand import Stand
 from sim_core.cloth import HalfSpace, Solid, Union, field_of
-from sim_core.cloth.contact import DistanceField, hull_mesh, united
+from sim_core.cloth.contact import DistanceField, closed, hull_mesh, united
 from sim_core.errors import SimCoreError
 
 __all__ = ["HANDS", "Beneath", "Surface"]
@@ -43,7 +43,8 @@ class Beneath:
     """What lies beneath: closed surfaces, the first of which is the wearer, or a stand.
 
     cell [m] of their distance field; box: its lowest and highest corner [m] (None: around the surfaces); floor: whether
-    the floor y = 0 is there, too. Equal nodes make equal values, so a field is kept with where its nodes lie.
+    the floor y = 0 is there, too; closing [m]: gaps between and in the surfaces are filled that no ball of that radius
+    enters. Equal nodes make equal values, so a field is kept with where its nodes lie.
     """
 
     surfaces: tuple[Surface, ...] = ()
@@ -51,6 +52,7 @@ class Beneath:
     cell: float = 0.008
     box: Box | None = None
     floor: bool = False
+    closing: float = 0.0
 
     def solid(self) -> Solid | None:
         """What cloth is kept out of, made anew from the surfaces: the same values on one machine."""
@@ -62,7 +64,7 @@ class Beneath:
         return Union((own, HalfSpace())) if self.floor else own
 
     def field(self) -> DistanceField:
-        """min(first, others - thicker) around all of them. Raises SimCoreError where there is no surface."""
+        """min(first, others - thicker) of all of them, gaps filled; raises SimCoreError where there is no surface."""
         if not self.surfaces:
             raise SimCoreError("beneath: no surface – a field needs one")
         points = np.concatenate([surface.vertices for surface in self.surfaces])
@@ -76,14 +78,15 @@ class Beneath:
                 made = united(made, hull, thicker=surface.hulls_thicker)
             found = made if found is None else united(found, made, thicker=surface.thicker)
         assert found is not None
-        return found
+        return closed(found, self.closing)
 
     def _field(self, vertices: np.ndarray, faces: np.ndarray, box: Box) -> DistanceField:
         return field_of(vertices, faces, cell=self.cell, band=BAND, box=box, far=False)
 
     def digest(self) -> str:
         """A hash of all that decides the field."""
-        hashed = hashlib.sha256(repr((self.stand, self.cell, self.box, self.floor)).encode())
+        told = (self.stand, self.cell, self.box, self.floor, *([self.closing] if self.closing else []))
+        hashed = hashlib.sha256(repr(told).encode())
         for surface in self.surfaces:
             for array in (surface.vertices, surface.faces, *surface.hulls):
                 hashed.update(array.tobytes())

@@ -59,6 +59,7 @@ class Settled:
             "cell": self.beneath.cell,
             "box": self.beneath.box,
             "floor": self.beneath.floor,
+            **({"closing": self.beneath.closing} if self.beneath.closing else {}),
             "surfaces": [
                 {"thicker": s.thicker, "hulls": len(s.hulls), "hulls_thicker": s.hulls_thicker}
                 | (asdict(lent[k]) if k in lent else {})
@@ -119,7 +120,12 @@ class Settled:
             Phase(**last),
             Holds(**kept, limit=(shorter, longer)),
             Beneath(
-                surfaces, stand, float(header["cell"]), _box(header["box"]), bool(header.get("floor", False))
+                surfaces,
+                stand,
+                float(header["cell"]),
+                _box(header["box"]),
+                bool(header.get("floor", False)),
+                float(header.get("closing", 0.0)),
             ),
             bool(header["even"]),
         )

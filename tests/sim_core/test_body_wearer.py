@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,16 @@ from sim_core import metrics
 from sim_core.body import HANDS, JOINTS, POSES, Figure, Mannequin, Pose, pose_named
 from sim_core.body.making import section
 from sim_core.cloth import Contact, HalfSpace, Material, MovingGrid, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.contact import GridSdf, Union, distances, field_of, hull_mesh, united
+from sim_core.cloth.contact import (
+    DistanceField,
+    GridSdf,
+    Union,
+    closed,
+    distances,
+    field_of,
+    hull_mesh,
+    united,
+)
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 
@@ -245,3 +255,34 @@ def test_a_hem_trails_on_the_floor_while_the_figure_walks_off(figure: Figure) ->
     assert (end[-64:, 1] < 0.02).mean() > 0.7  # the hem lies on the floor still,
     assert end[:64, 2].mean() - x[:64, 2].mean() > 0.1  # and the waist went with the figure
     assert end[-64:, 2].mean() - x[-64:, 2].mean() < 0.1
+
+
+def test_where_arms_hang_beside_the_trunk_what_lies_between_is_filled(figure: Figure) -> None:
+    """A gap beneath: the field is nowhere higher, it is lower between arm and trunk, and it has a name of its own."""
+    open_, mannequin = figure.beneath(Pose.arms(84.0, 84.0)), figure.mannequin
+    filled = replace(open_, closing=0.02)
+    before, after = open_.field(), filled.field()
+    assert (after.values <= before.values).all()
+    marks = mannequin.landmarks(Pose.arms(84.0, 84.0))
+    changed = np.argwhere(before.values - after.values > 0.004) * before.cell + before.origin
+    assert len(changed)
+    shoulder, hip = marks["shoulder_l"], marks["hip_l"]
+    under_an_arm = (np.abs(changed[:, 0]) > 0.08) & (changed[:, 1] < shoulder[1]) & (changed[:, 1] > hip[1])
+    assert under_an_arm.any()
+    assert filled.digest() != open_.digest()
+    assert replace(open_, closing=0.0).digest() == open_.digest()
+
+
+def test_a_moving_figure_is_filled_key_by_key(figure: Figure) -> None:
+    moving = figure.moving([Pose.arms(80.0, 80.0), Pose.arms(82.0, 82.0)])
+    filled = moving.closed(0.02)
+    assert moving.closed(0.0) is moving
+    assert filled.name != moving.name
+    for k in range(2):
+        own = closed(field_like(moving, k), 0.02)
+        assert np.array_equal(filled.key(k), own.values)
+        assert (filled.key(k) < moving.key(k)).any()
+
+
+def field_like(moving: MovingGrid, k: int):
+    return DistanceField(np.array(moving.origin), moving.cell, moving.key(k))

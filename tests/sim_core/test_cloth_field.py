@@ -10,7 +10,7 @@ import pytest
 from sim_core import metrics
 from sim_core.body import Mannequin, Pose
 from sim_core.cloth import Capsule
-from sim_core.cloth.contact import DistanceField, field_of, hull_mesh, solid_mesh, united
+from sim_core.cloth.contact import DistanceField, closed, field_of, hull_mesh, solid_mesh, united
 from sim_core.errors import SimCoreError
 from sim_core.metrics import winding
 from sim_core.picture import normals
@@ -164,3 +164,51 @@ def test_bad_meshes_are_refused_in_one_line() -> None:
             field_of(vertices, faces, cell=cell, band=band)
     with pytest.raises(SimCoreError, match="larger cells"):
         field_of(vertices, faces, cell=0.0001)
+
+
+def groove(half_angle: float, cell: float = 0.004) -> DistanceField:
+    """The distance to two planes that meet at the z axis and open upwards (+y), each so far [rad] off the vertical."""
+    axis = cell * np.arange(-20, 21)
+    x, y, _ = np.meshgrid(axis, axis, axis, indexing="ij")
+    walls = y * np.sin(half_angle) - np.abs(x) * np.cos(half_angle)
+    return DistanceField(np.full(3, axis[0]), cell, np.clip(walls, -0.05, 0.05).astype(np.float32))
+
+
+@pytest.mark.parametrize("degrees", [20.0, 45.0, 70.0])
+@pytest.mark.parametrize("radius", [0.006, 0.012])
+def test_a_groove_is_filled_as_far_as_no_ball_enters(degrees: float, radius: float) -> None:
+    """Between the walls a ball of that radius lies radius/sin above their meeting, and its lowest point is bare."""
+    angle = np.radians(degrees)
+    field = groove(angle)
+    filled = closed(field, radius)
+    centre = radius / np.sin(angle)
+    y = np.linspace(0.0, centre - 0.25 * radius, 30)
+    middle = np.column_stack([np.zeros(30), y, np.zeros(30)])
+    exact = np.minimum(y * np.sin(angle), radius - (centre - y))
+    assert np.abs(filled.at(middle) - exact).max() < 0.6 * field.cell
+    assert (filled.values <= field.values).all(), "what was solid stays so"
+    _, slope = filled.with_gradient(middle[exact < radius - 2 * field.cell])
+    assert (slope[:, 1] > 0.75).all(), "what is pinched there is pushed out of the groove, not to its walls"
+
+
+def test_where_a_ball_enters_nothing_changes() -> None:
+    x, y, z = np.meshgrid(*[0.004 * np.arange(-20, 21)] * 3, indexing="ij")
+    ball = DistanceField(np.full(3, -0.08), 0.004, (np.sqrt(x * x + y * y + z * z) - 0.04).astype(np.float32))
+    assert np.array_equal(closed(ball, 0.02).values, ball.values)
+    assert closed(ball, 0.0) is ball
+
+
+def test_a_gap_between_plates_is_filled_where_it_is_narrower_than_the_ball() -> None:
+    """Two plates of 14 by 60 mm, 12 mm apart."""
+    x, y, _ = np.meshgrid(*[0.004 * np.arange(-20, 21)] * 3, indexing="ij")
+    across, along = np.abs(np.abs(x) - 0.013) - 0.007, np.abs(y) - 0.03
+    outside = np.hypot(np.maximum(across, 0.0), np.maximum(along, 0.0))
+    plates = outside + np.minimum(np.maximum(across, along), 0.0)
+    field = DistanceField(np.full(3, -0.08), 0.004, plates.astype(np.float32))
+    narrow, wide = closed(field, 0.01), closed(field, 0.005)
+    middle = np.zeros((1, 3))
+    assert field.at(middle)[0] == pytest.approx(0.006, abs=1e-6)
+    assert narrow.at(middle)[0] < -0.015, "within, as deep as it is from where a ball could be"
+    assert wide.at(middle)[0] == pytest.approx(0.006, abs=1e-6)
+    far = field.values > 0.01
+    assert np.array_equal(narrow.values[far], field.values[far])

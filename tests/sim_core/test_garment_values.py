@@ -118,7 +118,10 @@ def test_what_two_layers_lie_on_is_written_once(tmp_path: Path) -> None:
     )
     other = replace(body, vertices=body.vertices + [1e-12, 0.0, 0.0])
     inner, outer = (
-        replace(arched(0.05), settled=Settled(Contact(), Phase(1.0), Holds.of(1), Beneath(surfaces)))
+        replace(
+            arched(0.05),
+            settled=Settled(Contact(), Phase(1.0), Holds.of(1), Beneath(surfaces, closing=0.012)),
+        )
         for surfaces in ((body, other), (other, body))
     )
     outer.save(tmp_path / "garment.npz")

@@ -1,4 +1,7 @@
-"""The surroundings of close-ups: a plate on pale ground before a wall that catches the light."""
+"""The surroundings of close-ups: one ground that curves up into a dome, with a pool of light and a soft shadow in it.
+
+No line parts ground and wall, from wherever a visitor looks: tones follow the way along the profile without a step.
+"""
 
 from __future__ import annotations
 
@@ -11,75 +14,67 @@ from sim_core.gltf import GlbFile
 __all__ = ["studio_glb"]
 
 _UNLIT = "KHR_materials_unlit"
-_WALL, _GLOW, _GROUND, _PLATE = "#8B8171", "#DED5C5", "#9A8F7D", "#AEA290"
+_POOL, _GROUND, _GLOW, _ABOVE = "#C6BBA9", "#A99E8C", "#DDD4C4", "#857B6B"
+_FLAT = 0.36  # share of the radius that is level ground
+_STEPS, _SIDES = 56, 32
+_SHADE = 0.5  # of the ground's light, right under an exhibit
+_UNDER = 0.42  # [m] over which that shade fades
 
 
 def studio_glb(radius: float = 9.0) -> bytes:
-    """A dome that is brightest behind the exhibit, ground that darkens away from it, a round plate with a soft rim."""
+    """Ground and dome as one surface of revolution, coloured at its corners."""
     glb = GlbFile()
     material = glb.material({"doubleSided": True, "extensions": {_UNLIT: {}}})
-    for name, (vertices, faces, colours) in {
-        "dome": _dome(radius),
-        "ground": _rings([0.0, 1.4, 1.8, 2.6, 4.5, radius], _shadowed, -0.06),
-        "plate": _rings([0.0, 1.2, 1.46, 1.5], _lit, 0.0, skirt=0.06),
-    }.items():
-        glb.mesh(name, vertices, faces, material, colours=colours)
+    around, height = _profile(radius)
+    angle = 2 * np.pi * np.arange(_SIDES) / _SIDES
+    vertices = np.stack(
+        np.broadcast_arrays(
+            around[:, None] * np.sin(angle), height[:, None], around[:, None] * np.cos(angle)
+        ),
+        axis=-1,
+    ).reshape(-1, 3)
+    step, side = (one.ravel() for one in np.mgrid[: len(around) - 1, :_SIDES])
+    a, b = step * _SIDES + side, step * _SIDES + (side + 1) % _SIDES
+    quads = np.stack([a, a + _SIDES, b, b, a + _SIDES, b + _SIDES], axis=1).reshape(-1, 3)
+    corners = vertices[quads]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    colours = np.repeat(_tones(around, height, radius), _SIDES, axis=0)
+    glb.mesh("studio", vertices, quads[area > 1e-9].astype(np.int32), material, colours=colours)
     return glb.bytes("studio", [_UNLIT], "hall_app.room")
 
 
-def _dome(radius: float) -> tuple[NDArray, NDArray, NDArray]:
-    rings, sides = 18, 48
-    angle = 2 * np.pi * np.arange(sides) / sides
-    vertices, colours = [], []
-    for share in np.linspace(-0.02, 1.0, rings):
-        around = radius * np.cos(max(share, 0.0) * np.pi / 2)
-        vertices.append(
-            np.column_stack([around * np.cos(angle), np.full(sides, share * radius), around * np.sin(angle)])
-        )
-        glow = np.exp(-(((share - 0.12) / 0.30) ** 2))
-        colours.append(np.broadcast_to(_mixed(_WALL, _GLOW, glow), (sides, 3)))
-    faces = []
-    for ring in range(rings - 1):
-        for side in range(sides):
-            a, b = ring * sides + side, ring * sides + (side + 1) % sides
-            faces += [[a, a + sides, b], [b, a + sides, b + sides]]
-    keep = np.array(faces, np.int32)
-    points = np.concatenate(vertices)
-    sides_of = points[keep]
-    area = np.linalg.norm(np.cross(sides_of[:, 1] - sides_of[:, 0], sides_of[:, 2] - sides_of[:, 0]), axis=1)
-    return points, keep[area > 1e-9], np.concatenate(colours)
+def _profile(radius: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distance from the axis and height (N,) [m], from the middle of the ground to the top of the dome."""
+    flat = _FLAT * radius
+    ground = flat * np.linspace(0.0, 1.0, _STEPS // 2, endpoint=False) ** 1.5  # closer where the shadow fades
+    bend = np.linspace(
+        -np.pi / 2, np.pi / 2, _STEPS
+    )  # a half ellipse beside the axis: level ground, wall, ceiling
+    wall = flat + (radius - flat) * np.cos(bend)
+    wall = np.where(bend > 0.0, radius * np.cos(bend), wall)
+    return np.concatenate([ground, wall]), np.concatenate(
+        [np.zeros(len(ground)), 0.5 * radius * (1 + np.sin(bend))]
+    )
 
 
-def _rings(
-    radii: list[float], paint, height: float, skirt: float = 0.0, sides: int = 64
-) -> tuple[NDArray, NDArray, NDArray]:
-    """Concentric rings at `height` [m]; skirt: how far the rim goes down."""
-    angle = 2 * np.pi * np.arange(sides) / sides
-    levels = [(r, height) for r in radii[1:]] + ([(radii[-1], height - skirt)] if skirt else [])
-    vertices, colours = [np.array([[0, height, 0]])], [paint(0.0)[None]]
-    for k, (r, y) in enumerate(levels):
-        vertices.append(np.column_stack([r * np.sin(angle), np.full(sides, y), r * np.cos(angle)]))
-        dim = 0.72 if skirt and k == len(levels) - 1 else 1.0
-        colours.append(np.broadcast_to(paint(r) * dim, (sides, 3)))
-    faces = [[0, 1 + s, 1 + (s + 1) % sides] for s in range(sides)]
-    for k in range(len(levels) - 1):
-        for s in range(sides):
-            a, b = 1 + k * sides + s, 1 + k * sides + (s + 1) % sides
-            faces += [[a, a + sides, b], [b, a + sides, b + sides]]
-    return np.concatenate(vertices), np.array(faces, np.int32), np.concatenate(colours)
+def _tones(around: NDArray, height: NDArray, radius: float) -> NDArray[np.float64]:
+    """Linear colours (N, 3): a pool of light that fades outwards, a glow at the height of what is shown, dusk above."""
+    way = np.cumsum(np.hypot(np.diff(around, prepend=0.0), np.diff(height, prepend=0.0)))
+    pool = np.exp(-((way / (0.24 * radius)) ** 2))
+    glow = np.exp(-(((height / radius - 0.24) / 0.17) ** 2))
+    dusk = _smooth((height / radius - 0.3) / 0.5)
+    tone = _mixed(linear(_GROUND), linear(_POOL), pool)
+    tone = _mixed(tone, linear(_GLOW), glow)
+    tone = _mixed(tone, linear(_ABOVE), dusk)
+    under = np.exp(-((way / _UNDER) ** 2))
+    return tone * (1 - _SHADE * under)[:, None]
 
 
-def _mixed(low: str, high: str, share: float) -> NDArray[np.float64]:
-    return linear(low) + (linear(high) - linear(low)) * share
+def _mixed(low: NDArray, high: NDArray, share: NDArray) -> NDArray[np.float64]:
+    return low + (high - low) * share[:, None]
 
 
-def _lit(radius: float) -> NDArray[np.float64]:
-    """The plate: lighter in its middle."""
-    return _mixed(_PLATE, "#C4B9A7", float(np.exp(-((radius / 0.9) ** 2))))
-
-
-def _shadowed(radius: float) -> NDArray[np.float64]:
-    """The ground: dark against the plate's rim, pale beyond, the wall's tone at the horizon."""
-    near = float(np.exp(-(((radius - 1.4) / 0.35) ** 2)))
-    far = min(radius / 9.0, 1.0)
-    return _mixed(_GROUND, _WALL, far) * (1 - 0.35 * near)
+def _smooth(share: NDArray) -> NDArray[np.float64]:
+    """0 to 1 without a kink at either end."""
+    inside = np.clip(share, 0.0, 1.0)
+    return inside * inside * (3 - 2 * inside)

@@ -21,7 +21,14 @@ from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 
 if TYPE_CHECKING:
-    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_faces, hull_mesh, united
+    from sim_core.cloth.contact.distance_field import (
+        DistanceField,
+        closed,
+        field_of,
+        hull_faces,
+        hull_mesh,
+        united,
+    )
     from sim_core.cloth.contact.moving_grid import MovingGrid, moving_mesh
 
 __all__ = [
@@ -48,6 +55,7 @@ __all__ = [
     "Union",
     "Untangling",
     "begin_pairs",
+    "closed",
     "collide_samples",
     "collide_vertices",
     "contact_samples",
@@ -81,6 +89,7 @@ __all__ = [
 _LATE = {
     "DistanceField": "distance_field",
     "MovingGrid": "moving_grid",
+    "closed": "distance_field",
     "field_of": "distance_field",
     "hull_faces": "distance_field",
     "hull_mesh": "distance_field",

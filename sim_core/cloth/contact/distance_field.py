@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+from scipy.spatial import ConvexHull, KDTree, QhullError
 
 from sim_core.cloth.contact.field_kernels import crossings, interpolate, splat, spread, sweep
 from sim_core.cloth.contact.solids import MOST_NODES, GridSdf
@@ -14,8 +15,10 @@ from sim_core.errors import SimCoreError
 from sim_core.validation import FURTHEST, coordinates, excerpt, finite, triangles, vector3
 from sim_core.validation import points as checked_points
 
-__all__ = ["DistanceField", "field_of", "hull_faces", "hull_mesh", "united"]
+__all__ = ["DistanceField", "closed", "field_of", "hull_faces", "hull_mesh", "united"]
 
+SPACING = math.sqrt(0.5)  # [cells] that a surface's nearest crossing of the grid may lie beside one, at most
+SLACK = 0.05  # [cells] by which a field's own error may lower it before a gap is seen there
 EXACT_CELLS = 2.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
 Corner = Sequence[float] | np.ndarray
 Box = tuple[Corner, Corner]
@@ -110,6 +113,44 @@ def united(first: DistanceField, second: DistanceField, *, thicker: float = 0.0)
         nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
         other = second.at(nodes).reshape(first.values.shape).astype(np.float32)
     return DistanceField(first.origin, first.cell, np.minimum(first.values, other - np.float32(thicker)))
+
+
+def closed(field: DistanceField, radius: float) -> DistanceField:
+    """The field with gaps filled that no ball of that radius [m] enters: a closing, its surface nowhere within the old.
+
+    Folds are pinched in such gaps (under arms, between a garment beneath and itself), where the sampled gradient jumps
+    from one wall to the other. Elsewhere the values stay as they were, to the bit.
+    """
+    if radius <= 0.0:
+        return field
+    values, cell = field.values, field.cell
+    front = _level(values, radius)
+    if not len(front):
+        return field
+    near = np.argwhere((values < radius) & (values > -radius))
+    way, _ = KDTree(front).query(near)
+    distance = np.sqrt(
+        np.maximum(way * way - SPACING * SPACING, 0.0)
+    )  # of the front between its points, at least
+    filled = np.float32(radius) - np.float32(cell) * (distance - SLACK).astype(np.float32)
+    out = values.copy()
+    at = tuple(near.T)
+    out[at] = np.minimum(out[at], filled)
+    return DistanceField(field.origin, cell, out)
+
+
+def _level(values: np.ndarray, level: float) -> np.ndarray:
+    """Where edges between neighbouring nodes cross a level: (N, 3) [cells]."""
+    found = []
+    for axis in range(3):
+        here, there = (np.moveaxis(values, axis, 0)[part] for part in (slice(None, -1), slice(1, None)))
+        index = np.argwhere((here < level) != (there < level))
+        low, high = here[tuple(index.T)], there[tuple(index.T)]
+        points = np.insert(
+            index[:, 1:].astype(float), axis, index[:, 0] + (level - low) / (high - low), axis=1
+        )
+        found.append(points)
+    return np.concatenate(found)
 
 
 def hull_faces(points: np.ndarray) -> np.ndarray:

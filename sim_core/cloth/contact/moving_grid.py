@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -93,6 +93,21 @@ class MovingGrid:
                 f"body: a frame goes from key {early:.2f} to {late:.2f} – at most to the next key"
             )
         return k, k + 1
+
+    def closed(self, radius: float) -> MovingGrid:
+        """The same with its gaps filled key by key, as `distance_field.closed` fills them; radius [m]."""
+        if radius <= 0.0:
+            return self
+        from sim_core.cloth.contact.distance_field import DistanceField, closed
+
+        origin = np.array(self.origin)
+
+        def key(k: int) -> np.ndarray:
+            return closed(DistanceField(origin, self.cell, self.key(k)), radius).values
+
+        return replace(
+            self, key=key, name=f"{self.name}, gaps of {radius} filled", _kept={}, _worn={}, _most={}
+        )
 
     def solid(self, k: int) -> Solid:
         """The body in pose k and what stands beside it, as a solid that stands still."""

@@ -116,7 +116,7 @@ class _Dressing:
         self.outfit, self.number, self.layer = outfit, number, outfit.layers[number]
         self.first = self.layer.first
         runs, self.moves = courses(self.layer, outfit.pose)
-        self.wearing = Wearing(outfit, self.moves, trails)
+        self.wearing = Wearing(outfit, self.moves, trails, closing=self.layer.closing)
         self.half = mirrored(outfit, number, self.moves)
         self.carried = brought_to_rest(runs, roughly=self.half) if self.first is not self.layer else ()
         self.runs, self.last = (*runs, *self.carried), runs[-1].steps[-1].step

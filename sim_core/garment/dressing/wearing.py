@@ -45,12 +45,14 @@ class Trail:
 
 @dataclass(frozen=True)
 class Wearing:
-    """The wearer and what it wears, in the poses of `moves`; floor: whether what is dressed may reach it."""
+    """The wearer and what it wears, in the poses of `moves`; floor: whether what is dressed may reach it; closing [m]:
+    as of `Beneath`."""
 
     outfit: Outfit
     moves: Moves
     trails: tuple[Trail, ...] = ()
     floor: bool = False
+    closing: float = 0.0
 
     @cached_property
     def figure(self) -> Figure | None:
@@ -89,7 +91,8 @@ class Wearing:
             return Beneath(stand=self.outfit.stand)
         (body,) = self.figure.beneath(self.moves.poses[key]).surfaces
         surfaces = [body, *(Surface(x, faces, thicker=WORN) for x, faces in self.meshes(key))]
-        return Beneath(tuple(surfaces), cell=self.figure.cell, box=self._box(half=half), floor=self.floor)
+        box = self._box(half=half)
+        return Beneath(tuple(surfaces), None, self.figure.cell, box, self.floor, self.closing)
 
     def solid(self, *, half: bool) -> Solid | MovingGrid:
         """What the cloth is kept out of; of a wearer that moves, its fields made when they are needed."""
@@ -110,7 +113,8 @@ class Wearing:
     def _name(self, half: bool) -> str:
         """Tells this body and its ways from any other."""
         assert self.figure is not None
-        hashed = hashlib.sha256(repr((self.figure.name, self.moves, half)).encode())
+        told = (self.figure.name, self.moves, half, *([self.closing] if self.closing else []))
+        hashed = hashlib.sha256(repr(told).encode())
         for trail in self.trails:
             hashed.update(trail.frames.tobytes() + trail.faces.tobytes())
         return hashed.hexdigest()[:16]
@@ -125,7 +129,10 @@ class Wearing:
         low, high = everything.min(0) - MARGIN, everything.max(0) + MARGIN
         cell = self.figure.cell
         reach = cell * float(np.ceil(max(high[0], -low[0]) / cell))
-        first = -2 * cell if half else -reach
+        beyond = -cell * (
+            2.0 + float(np.ceil(2 * self.closing / cell))
+        )  # a gap in the middle is filled as a whole
+        first = beyond if half else -reach
         return (first, float(low[1]), float(low[2])), (reach, float(high[1]), float(high[2]))
 
 

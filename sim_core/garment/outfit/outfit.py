@@ -53,7 +53,8 @@ class Layer:
     origin, origins [m]: where a corner of the weave's repeat lies in the axes of its panels, and of single ones (of a
     mirrored pattern's other half as far to the other side);
     coarse [m]: the mesh step it is sewn and posed at (None: COARSE for cloth finer than FINE that is not tied, else its
-    own)."""
+    own);
+    closing [m]: gaps beneath it are filled that no ball of that radius enters, so that no fold is pinched there."""
 
     name: str
     pattern: Pattern
@@ -65,6 +66,7 @@ class Layer:
     seed: int = 0
     loom: Loom = field(default_factory=Loom, repr=False, compare=False)
     coarse: float | None = None
+    closing: float = 0.0
     origin: tuple[float, float] = (0.0, 0.0)
     origins: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
@@ -184,6 +186,7 @@ class Outfit:
                     "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},
                     "edge": layer.edge,
                     **({} if layer.coarse is None else {"coarse": layer.coarse}),
+                    **({"closing": layer.closing} if layer.closing else {}),
                     **({"origin": layer.origin, "origins": dict(layer.origins)} if layer.placed else {}),
                     "seed": layer.seed,
                     "place": repr(layer.place),

@@ -190,6 +190,9 @@ class LayerTable(Table):
     origins: dict[str, Corner] = Field({}, description="the same of single panels")
     measures: dict[str, Measure] = Field({}, description="measures of the pattern to be changed [mm]")
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
+    closing: Number = Field(
+        0.0, ge=0, le=0.03, description="[m] gaps beneath are filled that no ball of that radius enters"
+    )
     seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
     start: PoseTable | None = Field(

@@ -201,7 +201,7 @@ def _wearer(
         hulls=hulls,
         beside=HalfSpace() if beside is None and lain.floor else beside,
         thicker=[own.hulls_thicker if own else 0.0] * hands + [surface.thicker for surface in worn],
-    )
+    ).closed(lain.closing)
 
 
 def _capped(name: str, surface: Surface, vertices: np.ndarray, count: int) -> np.ndarray:
