@@ -123,6 +123,21 @@ def test_cloth_is_laid_with_its_repeat_where_it_should_fall(tmp_path: Path) -> N
         load_outfit(written(tmp_path, ROBE + "origins = { cap = [0, 0] }\n"), ASSETS)
 
 
+def test_lined_cloth_folds_wider_and_gaps_beneath_it_are_filled(tmp_path: Path) -> None:
+    """Both are of a layer, and of what decides the result only where they are told."""
+    plain = load_outfit(written(tmp_path, ROBE), ASSETS)
+    assert "closing" not in str(plain.to_dict())
+    told = load_outfit(written(tmp_path, ROBE + "fold = 1.9\nclosing = 0.012\n"), ASSETS)
+    (layer,), usual = told.layers, default_program("flat")
+    assert (layer.program.fold, layer.closing) == (1.9, 0.012)
+    assert layer.program.steps == usual.steps
+    assert told.to_dict()["layers"][0]["closing"] == 0.012
+    assert told.to_dict() != plain.to_dict()
+    for wrong in ("fold = 0", "fold = 9.0", "closing = -0.01", "closing = 0.2"):
+        with pytest.raises(FileProblem, match=rf"layer\.1\.{wrong.partition(' ')[0]}"):
+            load_outfit(written(tmp_path, ROBE + wrong + "\n"), ASSETS)
+
+
 def test_a_pose_is_a_name_or_joints(tmp_path: Path) -> None:
     text = ROBE.replace('"display"', '{ name = "held", joints = { neck = [10.0, 0.0, 0.0] } }')
     outfit = load_outfit(written(tmp_path, text), ASSETS)

@@ -17,6 +17,7 @@ __all__ = ["layer_order", "overlap"]
 
 REACH = 0.03  # [m] within which cloth lies on other cloth
 FACING = 0.7  # cosine between the way to other cloth and the outward normal of the wearer: it lies over or under it
+ACROSS = 0.5  # cosine between that way and the cloth's own normal: it lies beside it otherwise
 SLIGHT = 0.0005  # [m] by which cloth may lie under what it should lie over: the shell's own give
 AHEAD = 0.05  # [m] below the shoulder fold in front: what lies nearer is no front
 ASIDE = 0.03  # [m] from the middle of the wearer to that of a front that is one side's
@@ -47,22 +48,40 @@ def overlap(garment: Garment, place: Placement) -> tuple[int, int]:
         layers = [pair for _, pair in folded] or [_wraps(garment)]
     else:
         return 0, 0
-    found = [_heights(garment.positions, field, *pair) for pair in layers if all(map(len, pair))]
+    normals = _normals(garment.positions, garment.faces)
+    found = [_heights(garment.positions, normals, field, pair) for pair in layers if all(map(len, pair))]
     height = np.concatenate([np.zeros(0), *found, *plies])
     return int((height < -SLIGHT).sum()), int((height > SLIGHT).sum())
 
 
-def _heights(x: np.ndarray, field: DistanceField, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
-    """How high (n,) [m] those of `outer` lie over `inner`, indices into x (V, 3) [m], that lie over or under it."""
+def _normals(x: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Unit normals (V, 3) of a draped garment at its vertices."""
+    area = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+    found = np.zeros_like(x)
+    for corner in range(3):
+        np.add.at(found, faces[:, corner], area)
+    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-12)
+
+
+def _heights(
+    x: np.ndarray, normals: np.ndarray, field: DistanceField, pair: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """How high (n,) [m] the outer ones of a pair lie over the inner, indices into x (V, 3) [m], that lie over or under.
+
+    normals (V, 3) of the cloth: a hem beside another, a little lower, lies neither over nor under it, where what they
+    hang over has ended and outwards is down.
+    """
+    outer, inner = pair
     away, near = KDTree(x[inner]).query(x[outer], distance_upper_bound=REACH)
     close = np.isfinite(away) & (away > 1e-9)
-    here, there = x[outer[close]], x[inner[np.asarray(near)[close]]]
+    here, there, across = x[outer[close]], x[inner[np.asarray(near)[close]]], normals[outer[close]]
     _, outward = field.with_gradient(0.5 * (here + there))
     size = np.linalg.norm(outward, axis=1)
     towards = here - there
     height = (towards * outward).sum(1) / np.maximum(size, 1e-9)
-    facing = (size > 0.3) & (np.abs(height) > FACING * np.linalg.norm(towards, axis=1))
-    return height[facing]
+    way = np.linalg.norm(towards, axis=1)
+    facing = (size > 0.3) & (np.abs(height) > FACING * way)
+    return height[facing & (np.abs((towards * across).sum(1)) > ACROSS * way)]
 
 
 @dataclass(frozen=True)

@@ -182,7 +182,8 @@ class _Reader:
         program = default_program("hung" if way == "flat" and stand is not None else way)
         steps = self._steps(f"{key}.step", table.step, pattern) or program.steps
         then = self._steps(f"{key}.then", table.then, pattern)
-        program = replace(program, steps=(*steps, *then))
+        fold = program.fold if table.fold is None else table.fold
+        program = replace(program, steps=(*steps, *then), fold=fold)
         if table.start is not None:
             program = self._begun(f"{key}.start", table.start, way, program)
         _check_order(self, key, program.steps, pattern)

@@ -190,6 +190,9 @@ class LayerTable(Table):
     origins: dict[str, Corner] = Field({}, description="the same of single panels")
     measures: dict[str, Measure] = Field({}, description="measures of the pattern to be changed [mm]")
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
+    fold: Number | None = Field(
+        None, gt=0, le=5, description="bending length it has at least, in mesh edges: lined cloth folds wider"
+    )
     closing: Number = Field(
         0.0, ge=0, le=0.03, description="[m] gaps beneath are filled that no ball of that radius enters"
     )
