@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
-_TEXTURE_QUALITY, _SHEET_QUALITY = 88, 84
+_TEXTURE_QUALITY, _SHEET_QUALITY = 87, 82
 _SHADED_SHEET_QUALITY = 78  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
