@@ -45,11 +45,13 @@ SHOW = """
 """
 
 
-def picture(page) -> np.ndarray:
-    """The frame as it is shown, once the hall has drawn it anew."""
-    for step in range(6):
-        page.mouse.move(300 + step, 300)
-        page.wait_for_timeout(250)
+def picture(page, there: list[float]) -> np.ndarray:
+    """The frame as it is shown from that stand, once the hall has drawn it anew: one looks aside and back."""
+    x, z, yaw, pitch = there
+    for turned in (0.02, 0.0):
+        page.evaluate("(there) => hall.goTo(...there)", [x, z, yaw + turned, pitch])
+        page.wait_for_timeout(700)
+    at_rest(page)
     return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB"))
 
 
@@ -100,11 +102,14 @@ def main() -> int:
                 continue
             page.evaluate("(there) => hall.goTo(...there)", there)
             page.wait_for_timeout(2500)
-            at_rest(page)
-            shown = picture(page)
+            shown = picture(page, there)
             page.evaluate(SHOW, [key, False])
-            hidden = picture(page)
+            hidden = picture(page, there)
             page.evaluate(SHOW, [key, True])
+            if (shown == hidden).all():
+                raise SystemExit(
+                    f"{key}: the hall went on drawing it – its node is another than /exhibits/{key}"
+                )
             row, brighter = measured(shown, hidden)
             rows[key] = row
             print(

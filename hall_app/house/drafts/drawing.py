@@ -13,7 +13,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError, ParserCreate
 
+from hall_app.content.models import PictureError, picture_size
 from hall_app.house.people import PeopleError
 
 __all__ = ["redrawn"]
@@ -28,18 +30,32 @@ _TEXTS = frozenset(("text", "tspan", "textPath"))
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]*")
 _UNUSED = ("on", "filter", "begin", "end", "dur", "values")  # how names begin that draw nothing here
-_REFERENCE = re.compile(r"""url\(\s*(['"]?)#([^'")\s]+)\1\s*\)""", re.IGNORECASE)
+_REFERENCE = re.compile(r"""url\(\s*(['"]?)#([^'"()\s;{}%]+)\1\s*\)""", re.IGNORECASE)
 _ASKING = re.compile(r"(?:url|src|image|image-set|cross-fade|element|expression)\s*\(", re.IGNORECASE)
-_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
-_AT_RULE = re.compile(r"@[\w-]+[^;{}]*(?:;|\{(?:[^{}]|\{[^{}]*\})*\})")
-_FILTER = re.compile(r"(?:backdrop-)?filter\s*:[^;}]*", re.IGNORECASE)
+_COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
+# What is never closed goes to the end, and nothing is looked at twice: else few bytes take minutes.
+_AT_RULE = re.compile(
+    r"""@[\w-]++(?:"[^"\n]*+"|'[^'\n]*+'|[^;{}@"'])*+(?:;|\{(?:[^{}]++|\{[^{}]*+\})*+\}|\Z)"""
+)
+_FILTER = re.compile(r"(?<![\w.#-])(?:-webkit-|backdrop-)?filter\s*:[^;{}]*", re.IGNORECASE)
 _PICTURE = re.compile(r"data:image/(?:png|jpe?g|webp)\s*;\s*base64\s*,", re.IGNORECASE)
 _TYPES = {".png": "png", ".jpg": "jpeg", ".webp": "webp"}
 
+_XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
+_SCREENS = ("", "all", "screen")
+_PAINTING = re.compile(
+    r"fill|stroke|marker.*|style"
+)  # attributes whose targets are drawn for each element within
+_MARKERS = re.compile(r"marker(?:-mid)?\b")
+_STROKE = 64  # characters of a path that count as one more element
+
 _MOST_DEEP = 120
+_LONGEST_SPACE = 200  # characters of a namespace's name, which every name of the tree repeats
 _MOST_WRITTEN = 60_000  # elements of the file
 _MOST_DRAWN = 300_000  # elements, each as often as it is drawn
-_MOST_PICTURES = 8
+_MOST_PIXELS = 20_000_000  # of all pictures within
+_MOST_KEPT = 4_000_000  # bytes, as they are written anew
+_MOST_TOLD = 8
 
 
 def redrawn(
@@ -51,38 +67,58 @@ def redrawn(
     """
     cleaning = _Cleaning(name, picture)
     root = cleaning.kept(_tree(name, data), "svg")
+    if taken := _without_rules_that_draw(root):
+        cleaning.left["url"] += taken
     _check_drawn(name, root)
     root.set("xmlns", _SVG)
     told = " × ".join(_measures(root))
     if cleaning.left:
-        told += " · − " + ", ".join(f"{key} {count}" for key, count in sorted(cleaning.left.items()))
-    return ElementTree.tostring(root, "utf-8", xml_declaration=True), told.removeprefix(" · ")
+        most = sorted(cleaning.left.most_common(_MOST_TOLD))
+        told += " · − " + ", ".join(f"{key} {count}" for key, count in most)
+    kept = ElementTree.tostring(root, "utf-8", xml_declaration=True)
+    if len(kept) > _MOST_KEPT:
+        raise PeopleError("file-size", name=name, kind="drawing", most=_MOST_KEPT // 1_000_000)
+    return kept, told.removeprefix(" · ")
 
 
 def _tree(name: str, data: bytes) -> ElementTree.Element:
-    """Read while its depth and length are counted: an entity or a nest of groups is small as a file."""
-    if b"<!ENTITY" in data:
-        raise PeopleError("file-svg", name=name)
-    parser = ElementTree.XMLPullParser(("start", "end"))
-    depth = count = 0
-    root: ElementTree.Element | None = None
+    """Looked through before it is read: what is declared, an entity or an attribute, may be small as a file alone."""
+    if b"\0" in data:  # sixteen bits a character; no program writes drawings so
+        raise PeopleError("file-broken", name=name, why="it is no UTF-8")
     try:
-        for at in range(0, len(data), 65_536):
-            parser.feed(data[at : at + 65_536])
-            for event, element in parser.read_events():
-                root = element if root is None else root
-                depth += 1 if event == "start" else -1
-                count += event == "start"
-                if depth > _MOST_DEEP or count > _MOST_WRITTEN:
-                    raise PeopleError("file-svg-drawn", name=name)
-        parser.close()
+        _look_through(name, data)
+        root = ElementTree.fromstring(data)
     except PeopleError:
         raise
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
+    except (ExpatError, ElementTree.ParseError, ValueError, LookupError) as error:
         raise PeopleError("file-broken", name=name, why=str(error)[:120]) from None
-    if root is None or _local(root.tag) != "svg":
+    if _local(root.tag) != "svg":
         raise PeopleError("file-kind", name=name)
     return root
+
+
+def _look_through(name: str, data: bytes) -> None:
+    """Raises PeopleError for declarations, and for what is too deep or too long; ExpatError for what is no XML."""
+    depth = count = 0
+
+    def declared(*_: object) -> None:
+        raise PeopleError("file-svg", name=name)
+
+    def begin(_: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count
+        depth, count = depth + 1, count + 1
+        spaces = (len(value) for key, value in attributes.items() if key.startswith("xmlns"))
+        if depth > _MOST_DEEP or count > _MOST_WRITTEN or max(spaces, default=0) > _LONGEST_SPACE:
+            raise PeopleError("file-svg-drawn", name=name)
+
+    def end(_: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser = ParserCreate()
+    parser.EntityDeclHandler = parser.AttlistDeclHandler = declared
+    parser.StartElementHandler, parser.EndElementHandler = begin, end
+    parser.Parse(data, True)
 
 
 @dataclass
@@ -90,7 +126,7 @@ class _Cleaning:
     name: str
     picture: Callable[[str, bytes], tuple[bytes, str, str]]
     left: Counter[str] = field(default_factory=Counter)  # what was left out -> how often
-    pictures: int = 0
+    pixels: int = 0
 
     def kept(self, source: ElementTree.Element, tag: str) -> ElementTree.Element:
         """The element with what draws of it under that name, its names without a namespace."""
@@ -99,7 +135,8 @@ class _Cleaning:
             self._attribute(made, name, value)
         if tag == "style":
             made.attrib = {}
-            made.text = self._rules("".join(source.itertext()))
+            shown = source.get("media", "").strip().lower() in _SCREENS
+            made.text = self._rules("".join(source.itertext())) if shown else ""
             return made
         made.text = source.text
         for child in source:
@@ -109,33 +146,43 @@ class _Cleaning:
             if local in _DRAWN and (local != "image" or self._embedded(child)):
                 made.append(self.kept(child, local))
                 made[-1].tail = child.tail
-            elif local not in ("", "metadata"):  # what an editor notes for itself is no loss
-                self.left[local] += 1
+                continue
+            if local not in ("", "metadata"):  # what an editor notes for itself is no loss
+                self.left[local[:20]] += 1
+            if child.tail and len(made):
+                made[-1].tail = (made[-1].tail or "") + child.tail
+            elif child.tail:
+                made.text = (made.text or "") + child.tail
         return made
 
     def _attribute(self, made: ElementTree.Element, name: str, value: str) -> None:
         space, _, local = name.rpartition("}")
-        if local == "href" and space in ("", "{" + _XLINK):
-            if value.strip().startswith("#") or made.tag == "image":
-                made.set("href", value.strip())
+        if name == _XML_SPACE:
+            made.set(name, value)
+        elif local == "href" and space in ("", "{" + _XLINK):
+            if (value.strip().startswith("#") and "%" not in value) or made.tag == "image":
+                made.set("href", made.get("href", value.strip()) if space else value.strip())
             else:
                 self.left["href"] += 1
         elif space or not _NAME.fullmatch(local) or local.startswith("data-"):
             return
         elif local.lower().startswith(_UNUSED):
             self.left[local[:20]] += 1
+        elif local in ("id", "class"):
+            made.set(local, value)
         elif (clean := self._value(value)) is None:
-            self.left[local] += 1
+            self.left[local[:20]] += 1
         else:
             made.set(local, clean)
 
     def _value(self, value: str) -> str | None:
         """An attribute that may hold CSS; None: it asks for something beyond the file, or hides what it asks for."""
-        value = _FILTER.sub("", _COMMENT.sub("", value))
-        return None if "\\" in value or _ASKING.search(_REFERENCE.sub("", value)) else value
+        value = _FILTER.sub("", _COMMENT.sub(" ", value))
+        hidden = "\\" in value or "/*" in value
+        return None if hidden or _ASKING.search(_REFERENCE.sub(" ", value)) else value
 
     def _rules(self, sheet: str) -> str:
-        sheet, at_rules = _AT_RULE.subn("", _COMMENT.sub("", sheet))
+        sheet, at_rules = _AT_RULE.subn("", _COMMENT.sub(" ", sheet))
         if at_rules:
             self.left["@"] += at_rules
         clean = self._value(sheet)
@@ -150,14 +197,15 @@ class _Cleaning:
         head = _PICTURE.match(element.get(key, "").strip())
         if head is None:
             return False
-        self.pictures += 1
-        if self.pictures > _MOST_PICTURES:
-            raise PeopleError("file-svg-drawn", name=self.name)
         try:
             data = base64.b64decode(element.get(key, "").strip()[head.end() :])
-        except (binascii.Error, ValueError):
+            width, height = picture_size(data)
+            self.pixels += width * height
+            if self.pixels > _MOST_PIXELS:
+                raise PeopleError("file-svg-drawn", name=self.name)
+            data, ending, _ = self.picture(self.name, data)
+        except (binascii.Error, PictureError):
             return False
-        data, ending, _ = self.picture(self.name, data)
         for name in [name for name in element.attrib if name.rpartition("}")[2] == "href"]:
             del element.attrib[name]
         element.set("href", f"data:image/{_TYPES[ending]};base64,{base64.b64encode(data).decode()}")
@@ -179,9 +227,24 @@ def _measures(root: ElementTree.Element) -> Iterator[str]:
             yield (side or other)[:20]
 
 
+def _without_rules_that_draw(root: ElementTree.Element) -> int:
+    """Takes from style sheets what their rules refer to but for gradients; how often. A rule serves any number of
+    elements: nobody can tell how much that draws."""
+    free = {one.get("id", "") for one in root.iter() if one.tag in _GRADIENTS}
+    free -= {one.get("id", "") for one in root.iter() if one.tag not in _GRADIENTS}
+    taken = 0
+    for sheet in root.iter("style"):
+        parts = _REFERENCE.finditer(sheet.text or "")
+        taken += sum(match[2] not in free for match in parts)
+        sheet.text = _REFERENCE.sub(lambda match: match[0] if match[2] in free else "none", sheet.text or "")
+    return taken
+
+
 def _check_drawn(name: str, root: ElementTree.Element) -> None:
     """Raises PeopleError where little text draws without end: uses, patterns, masks, clips and markers that nest."""
-    by_id = {one.get("id"): one for one in root.iter() if one.get("id")}
+    by_id: dict[str, ElementTree.Element] = {}
+    for one in root.iter():
+        by_id.setdefault(one.get("id", ""), one)  # of two of one name browsers take the first
     known: dict[ElementTree.Element, int] = {}
     within: set[ElementTree.Element] = set()
 
@@ -191,26 +254,33 @@ def _check_drawn(name: str, root: ElementTree.Element) -> None:
         if element in within or depth > 2 * _MOST_DEEP:
             raise PeopleError("file-svg-drawn", name=name)
         within.add(element)
-        count = 1 + sum(drawn(child, depth + 1) for child in element)
-        for key in references(element):
-            if (target := by_id.get(key)) is not None:
-                count += drawn(target, depth + 1)
+        line = len(element.get("d", "")) + len(element.get("points", ""))
+        count = (
+            1
+            + (line + len(element.text or "")) // _STROKE
+            + sum(drawn(child, depth + 1) for child in element)
+        )
+        times = 1
+        for key, target in targets(element):
+            cost = drawn(target, depth + 1)
+            if _PAINTING.fullmatch(key):  # handed down to all that is within
+                corners = line // 2 if _MARKERS.search(key + element.get("style", "")) else 0
+                times += cost * max(1, corners)
+            else:
+                count += cost
         within.discard(element)
-        known[element] = count = min(count, _MOST_DRAWN + 1)
+        known[element] = count = min(count * times, _MOST_DRAWN + 1)
         return count
 
-    def references(element: ElementTree.Element) -> Iterator[str]:
+    def targets(element: ElementTree.Element) -> Iterator[tuple[str, ElementTree.Element]]:
         for key, value in element.attrib.items():
+            names = [match[2] for match in _REFERENCE.finditer(value)]
             if key == "href" and value.startswith("#"):
-                yield value[1:]
-            yield from (match[2] for match in _REFERENCE.finditer(value))
+                names.append(value[1:])
+            for one in names:
+                target = by_id.get(one)
+                if target is not None and target.tag not in _GRADIENTS and element.tag not in _GRADIENTS:
+                    yield key, target
 
-    # A rule of a style sheet serves any number of elements: it may name what costs nothing, and clips of one shape.
-    for sheet in root.iter("style"):
-        for match in _REFERENCE.finditer(sheet.text or ""):
-            target = by_id.get(match[2])
-            plain = target is None or target.tag in _GRADIENTS
-            if not (plain or (len(list(target.iter())) <= 2 and target.find("use") is None)):
-                raise PeopleError("file-svg-drawn", name=name)
     if drawn(root, 0) > _MOST_DRAWN:
         raise PeopleError("file-svg-drawn", name=name)
