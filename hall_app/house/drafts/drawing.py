@@ -43,9 +43,8 @@ _TYPES = {".png": "png", ".jpg": "jpeg", ".webp": "webp"}
 
 _XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
 _SCREENS = ("", "all", "screen")
-_PAINTING = re.compile(
-    r"fill|stroke|marker.*|style"
-)  # attributes whose targets are drawn for each element within
+# Attributes whose targets are drawn for each element within.
+_PAINTING = re.compile(r"fill|stroke|marker.*|style")
 _MARKERS = re.compile(r"marker(?:-mid)?\b")
 _STROKE = 64  # characters of a path that count as one more element
 
@@ -54,7 +53,6 @@ _LONGEST_SPACE = 200  # characters of a namespace's name, which every name of th
 _MOST_WRITTEN = 60_000  # elements of the file
 _MOST_DRAWN = 300_000  # elements, each as often as it is drawn
 _MOST_PIXELS = 20_000_000  # of all pictures within
-_MOST_KEPT = 4_000_000  # bytes, as they are written anew
 _MOST_TOLD = 8
 
 
@@ -75,10 +73,7 @@ def redrawn(
     if cleaning.left:
         most = sorted(cleaning.left.most_common(_MOST_TOLD))
         told += " · − " + ", ".join(f"{key} {count}" for key, count in most)
-    kept = ElementTree.tostring(root, "utf-8", xml_declaration=True)
-    if len(kept) > _MOST_KEPT:
-        raise PeopleError("file-size", name=name, kind="drawing", most=_MOST_KEPT // 1_000_000)
-    return kept, told.removeprefix(" · ")
+    return ElementTree.tostring(root, "utf-8", xml_declaration=True), told.removeprefix(" · ")
 
 
 def _tree(name: str, data: bytes) -> ElementTree.Element:

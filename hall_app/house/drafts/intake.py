@@ -80,15 +80,14 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     if kind not in USES.get(use, ()):
         raise PeopleError("file-use", name=shown, kind=kind)
     kind = use if use in ("scan", "sound") else kind
-    if size > LARGEST[kind]:
-        raise PeopleError("file-size", name=shown, kind=kind, most=LARGEST[kind] // MB)
+    limited = "drawing" if ending == ".svg" else kind
+    _check_size(shown, limited, size)
     file.seek(0)
-    data = file.read(LARGEST[kind] + 1)
+    data = file.read(LARGEST[limited] + 1)
     told = ""
     if ending == ".svg":
-        if size > LARGEST["drawing"]:
-            raise PeopleError("file-size", name=shown, kind="drawing", most=LARGEST["drawing"] // MB)
         data, told = redrawn(shown, data, _picture)
+        _check_size(shown, limited, len(data))  # pictures within may have grown as they were drawn anew
     elif kind == "picture":
         data, ending, told = _picture(shown, data)
     elif ending == ".glb":
@@ -96,6 +95,12 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     elif kind in ("film", "sound"):
         data, ending, told = _recording(shown, data, ending, kind)
     return Taken(kind, _safe(name, kind) + ending, data, told)
+
+
+def _check_size(shown: str, kind: str, size: int) -> None:
+    """kind: of LARGEST's. Raises PeopleError."""
+    if size > LARGEST[kind]:
+        raise PeopleError("file-size", name=shown, kind=kind, most=LARGEST[kind] // MB)
 
 
 def _kind(shown: str, head: bytes, use: str) -> tuple[str, str]:
@@ -205,8 +210,7 @@ def _recording(shown: str, data: bytes, ending: str, kind: str) -> tuple[bytes, 
                 raise PeopleError("file-slow", name=shown, seconds=int(_WITHIN))
             if isinstance(found, Refused):
                 raise PeopleError(found.key, name=shown, **found.facts)
-            if target.stat().st_size > LARGEST[kind]:
-                raise PeopleError("file-size", name=shown, kind=kind, most=LARGEST[kind] // MB)
+            _check_size(shown, kind, target.stat().st_size)
             return target.read_bytes(), found.ending, found.told
     finally:
         _READING.release()

@@ -12,6 +12,7 @@ from sim_core.cloth.contact import DistanceField
 from sim_core.garment.garment import Garment
 from sim_core.garment.pattern import Pattern, Plies, both_halves
 from sim_core.garment.placement import Flat, Placement, Wrapped
+from sim_core.picture import normals
 
 __all__ = ["layer_order", "overlap"]
 
@@ -48,33 +49,24 @@ def overlap(garment: Garment, place: Placement) -> tuple[int, int]:
         layers = [pair for _, pair in folded] or [_wraps(garment)]
     else:
         return 0, 0
-    normals = _normals(garment.positions, garment.faces)
-    found = [_heights(garment.positions, normals, field, pair) for pair in layers if all(map(len, pair))]
+    cloth = normals(garment.positions, garment.faces)
+    found = [_heights(garment.positions, cloth, field, pair) for pair in layers if all(map(len, pair))]
     height = np.concatenate([np.zeros(0), *found, *plies])
     return int((height < -SLIGHT).sum()), int((height > SLIGHT).sum())
 
 
-def _normals(x: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Unit normals (V, 3) of a draped garment at its vertices."""
-    area = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
-    found = np.zeros_like(x)
-    for corner in range(3):
-        np.add.at(found, faces[:, corner], area)
-    return found / np.maximum(np.linalg.norm(found, axis=1, keepdims=True), 1e-12)
-
-
 def _heights(
-    x: np.ndarray, normals: np.ndarray, field: DistanceField, pair: tuple[np.ndarray, np.ndarray]
+    x: np.ndarray, cloth: np.ndarray, field: DistanceField, pair: tuple[np.ndarray, np.ndarray]
 ) -> np.ndarray:
     """How high (n,) [m] the outer ones of a pair lie over the inner, indices into x (V, 3) [m], that lie over or under.
 
-    normals (V, 3) of the cloth: a hem beside another, a little lower, lies neither over nor under it, where what they
-    hang over has ended and outwards is down.
+    cloth (V, 3): its unit normals. A hem beside another, a little lower, lies neither over nor under it, where what
+    they hang over has ended and outwards is down.
     """
     outer, inner = pair
     away, near = KDTree(x[inner]).query(x[outer], distance_upper_bound=REACH)
     close = np.isfinite(away) & (away > 1e-9)
-    here, there, across = x[outer[close]], x[inner[np.asarray(near)[close]]], normals[outer[close]]
+    here, there, across = x[outer[close]], x[inner[np.asarray(near)[close]]], cloth[outer[close]]
     _, outward = field.with_gradient(0.5 * (here + there))
     size = np.linalg.norm(outward, axis=1)
     towards = here - there

@@ -129,10 +129,8 @@ class Wearing:
         low, high = everything.min(0) - MARGIN, everything.max(0) + MARGIN
         cell = self.figure.cell
         reach = cell * float(np.ceil(max(high[0], -low[0]) / cell))
-        beyond = -cell * (
-            2.0 + float(np.ceil(2 * self.closing / cell))
-        )  # a gap in the middle is filled as a whole
-        first = beyond if half else -reach
+        beyond = cell * (2.0 + float(np.ceil(2 * self.closing / cell)))  # a gap in the middle is filled whole
+        first = -beyond if half else -reach
         return (first, float(low[1]), float(low[2])), (reach, float(high[1]), float(high[2]))
 
 
