@@ -175,6 +175,13 @@ def compiled(node: ast.AST) -> bool:
     return any("jit" in ast.unparse(decorator) for decorator in getattr(node, "decorator_list", ()))
 
 
+def test_what_ships_is_small():
+    """A house of a curator's own may hold far more."""
+    sizes = {path: path.stat().st_size for path in (ROOT / "assets").rglob("*") if path.is_file()}
+    assert sum(sizes.values()) <= 60_000_000
+    assert max(sizes.values()) <= 10_000_000
+
+
 @pytest.mark.parametrize(
     ("module", "forbidden"),
     [

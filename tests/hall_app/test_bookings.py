@@ -321,6 +321,8 @@ def test_what_is_cancelled_while_the_answer_is_under_way_is_told_so(people, monk
         ({"places": 1001}, "occasion-places"),
         ({"places": 3, "party": 4}, "occasion-places"),
         ({"text_zh": "长" * 4001}, "occasion-text"),
+        ({"text_en": "a bell \a"}, "occasion-text"),
+        ({"kind": "feast"}, "occasion-kind"),
     ],
 )
 def test_a_plan_is_checked_and_nothing_of_it_kept(people, changed, key):

@@ -145,7 +145,8 @@ def test_each_fault_has_its_own_line(house: Path, case: str):
     assert fix in found[0].partition(" – ")[2]
 
 
-def test_too_large_a_folder(house: Path):
+def test_too_large_a_folder(house: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("hall_app.check.files.budget.FOLDER", 60_000_000)
     for number in range(7):
         (house / f"{number}.bin").write_bytes(bytes(9_000_000))
     assert lines(house) == [".: the folder has 63.0 MB, at most 60 MB – remove or shrink the largest files"]

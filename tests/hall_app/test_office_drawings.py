@@ -21,6 +21,7 @@ from hall_app.house.people import PeopleError
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted((*(ROOT / "assets").rglob("media/*.svg"), *(ROOT / "tests/sim_core/sheets").glob("*.svg")))
 SVG = "{http://www.w3.org/2000/svg}"
+NO_SHAPES = (SVG + "metadata", SVG + "style")
 
 
 def taken(data: bytes, use: str = "picture") -> Taken:
@@ -34,12 +35,14 @@ def kept(inside: str) -> tuple[str, str]:
 
 
 def drawn_by(data: bytes) -> list[tuple[str, tuple[tuple[str, str], ...], str]]:
-    """What draws in a tree, in order: element, plain attributes, text."""
+    """What draws in a tree but for sheets and classes, in order: element, plain attributes, text."""
     found = []
     for one in ElementTree.fromstring(data).iter():
-        if isinstance(one.tag, str) and one.tag.startswith(SVG) and one.tag != SVG + "metadata":
-            plain = tuple(sorted((k, v) for k, v in one.attrib.items() if "}" not in k and k != "type"))
-            found.append((one.tag, plain, (one.text or "").strip()))
+        if isinstance(one.tag, str) and one.tag.startswith(SVG) and one.tag not in NO_SHAPES:
+            plain = {key: value for key, value in one.attrib.items() if "}" not in key and key != "class"}
+            if "style" in plain:
+                plain["style"] = re.sub(r"\s*([:;])\s*", r"\1", plain["style"].strip()).rstrip(";")
+            found.append((one.tag, tuple(sorted(plain.items())), (one.text or "").strip()))
     return found
 
 
@@ -55,6 +58,7 @@ def test_an_honest_drawing_is_kept_to_the_letter(tmp_path, path):
     assert taken(one.data).data == one.data, "cleaned again it is the same"
 
 
+ONE = "<style>.c1{%s}\n</style>"
 # What comes -> what of it is kept. A path draws all the while.
 LEFT_OUT = {
     '<script>x()</script><path d="M0 0"/>': '<path d="M0 0" />',
@@ -64,20 +68,34 @@ LEFT_OUT = {
     '<use href="other.svg#a"/>': "<use />",
     '<path fill="url(http://x/#a)" d="M0 0"/>': '<path d="M0 0" />',
     '<path style="fill:\\75rl(http://x)" d="M0 0"/>': '<path d="M0 0" />',
-    '<path style="fill:u/**/rl(http://x)" d="M0 0"/>': '<path style="fill:u rl(http://x)" d="M0 0" />',
+    '<path style="fill:u/**/rl(http://x)" d="M0 0"/>': '<path d="M0 0" />',
     '<path fill="url(#a)" d="M0 0"/>': '<path fill="url(#a)" d="M0 0" />',
-    "<style>@font-face{src:url(http://x)} .a{fill:red}</style>": "<style> .a{fill:red}</style>",
-    "<style>.a{fill:url(http://x)}</style>": "<style />",
-    '<style>.x{fill:"url(\n#;}rect{mask-image:url(http://h/x)}</style><rect/>': "<style /><rect />",
+    '<path style="fill:red;fill:url(http://x);q:y" d="M0 0"/>': '<path style="fill:red" d="M0 0" />',
+    '<path style="fill:u\\72l(\'#a\') \\72 ed" d="M0 0"/>': '<path style="fill:url(#a) red" d="M0 0" />',
+    '<rect style="mask:inherit;stroke-dasharray:1%"/><rect mask="inherit"/>': "<rect /><rect />",
+    "<style>@font-face{src:url(http://x)} rect{fill:red}</style><rect/>": f'{ONE % "fill:red"}<rect class="c1" />',
+    "<style>rect{fill:url(http://x)}</style><rect/>": "<rect />",
+    '<style>.x{fill:"url(\n#;}rect{mask-image:url(http://h/x)}</style><rect/>': "<rect />",
     "<rect style='x:\"url(&#10;#;mask-image:url(http://h/x)'/>": "<rect />",
-    '<rect style="filter//**/**/:blur(30px)"/>': '<rect style="filter/ **/:blur(30px)" />',
-    "<style>@import url('c?f=R:400;700'); .a{fill:#0f0}</style>": "<style> .a{fill:#0f0}</style>",
-    "<style>.filter:hover{x:y} .b{filter:blur(3px);x:y}</style>": "<style>.filter:hover{x:y} .b{;x:y}</style>",
-    '<style media="print">path{display:none}</style>': "<style />",
-    '<style>.a{clip-path:url(#c)} .b{fill:url(#g)}</style><linearGradient id="g"/><clipPath id="c"/>': (
-        '<style>.a{clip-path:none} .b{fill:url(#g)}</style><linearGradient id="g" /><clipPath id="c" />'
+    '<rect style="filter//**/**/:blur(30px)"/>': "<rect />",
+    "<style>@import url(//f/c?f=R:400;700@1); rect{fill:#0f0}</style><rect/>": (
+        f'{ONE % "fill:#0f0"}<rect class="c1" />'
     ),
-    '<g id="image (1)"/><use href="#%61"/>': '<g id="image (1)" /><use />',
+    "<style><![CDATA[<!-- g:hover{fill:red} rect{-webkit-backdrop-filter:blur(3px);fill:red} -->]]></style><rect/>": (
+        f'{ONE % "fill:red"}<rect class="c1" />'
+    ),
+    '<style media="print">path{display:none}</style><style type="x">path{display:none}</style><path/>': "<path />",
+    '<style media="print, screen">@media all{g>.a{fill:red}}</style><g><rect class="a b"/></g><rect class="a"/>': (
+        f'{ONE % "fill:red"}<g><rect class="c1" /></g><rect />'
+    ),
+    '<style>.a{clip-path:url("#c")}</style><clipPath id="c"/><rect class="a"/>': (
+        f'{ONE % "clip-path:url(#c)"}<clipPath id="c" /><rect class="c1" />'
+    ),
+    "<style>rect{fill:red;x:1} #o{fill:blue} * {fill:tan;y:2!important}</style><rect id='o'/>": (
+        "<style>.c1{fill:blue;x:1;y:2!important}\n.c2{fill:tan;y:2!important}\n</style>"  # of the root
+        '<rect id="o" class="c1" />'
+    ),
+    '<g id="image (1)"/><use href="#%61"/><use href="#a&#10;b"/>': '<g id="image (1)" /><use href="#a" /><use />',
     '<text xml:space="preserve">m<sup>2</sup> of <set/>silk</text>': '<text xml:space="preserve">m of silk</text>',
     "<animate attributeName='href' to='javascript:x()'/><path d='M0 0'/>": '<path d="M0 0" />',
     '<filter id="f"><feImage href="http://x"/></filter><path filter="url(#f)" d="M0 0"/>': '<path d="M0 0" />',
@@ -107,6 +125,7 @@ def test_a_picture_within_is_drawn_anew():
     assert Image.open(io.BytesIO(again)).size == (20, 10)
 
 
+SAID = b"fill stroke color font-family opacity mask display direction overflow cx cy r".split()
 ENDLESS = {
     "uses of uses": doubled(40),
     "a circle": b'<g id="a"><use href="#a"/></g>',
@@ -125,6 +144,32 @@ ENDLESS = {
     "the first of one name": b'<g id="a">%s</g>%s<g id="a"/>'
     % (b"<path/>" * 99, b'<use href="#a"/>' * 9_999),
     "a long namespace": b'<g xmlns:a="%s"/>' % (b"x" * 9_999),
+    "a name with a line in it": doubled(40).replace(b"#a", b"#&#10;a"),
+    "text after text": b'<text id="a"><tspan/>%s</text>%s' % (b"x" * 99_999, b'<use href="#a"/>' * 99),
+    "markers along what is within": b'<marker id="m">%s</marker><g marker-mid="url(#m)"><path d="M0 0%s"/></g>'
+    % (b"<path/>" * 99, b"h1" * 9_999),
+    "dashes": b'<g stroke-dasharray=".0004">%s</g>' % (b'<path d="M0 0h390"/>' * 99),
+    "stops": b'<linearGradient id="g">%s</linearGradient>%s'
+    % (b"<stop/>" * 9_999, b'<rect fill="url(#g)"/>' * 999),
+    "gradients in a row": b"".join(
+        b'<linearGradient id="g%d" href="#g%d"/>' % (n, n - 1) for n in range(2_000)
+    ),
+    "groups laid over": b'<g style="mix-blend-mode:darken"><path/></g>' * 9_999,
+    "selectors": b"<style>%s</style>%s" % (b"* * * * * *{x:1}" * 999, b"<g>" * 100 + b"</g>" * 100),
+    "rules": b"<style>" + b"*{x:1}" * 99_999 + b"</style>",
+    "what rules say": b"<style>%s</style>%s"
+    % (
+        b"".join(b".a%d{%s:%s}" % (n, key, b"x" * 20_000) for n, key in enumerate(SAID)),
+        b"".join(
+            b'<g class="%s"/>' % b" ".join(b"a%d" % n for n in range(len(SAID)) if n != one)
+            for one in range(len(SAID))
+        ),
+    ),
+    "attributes": b"<g %s/>" % b" ".join(b'a%d=""' % n for n in range(300_001)),
+    "many pictures": b"".join(
+        b'<image href="data:image/png;base64,%s"/>' % base64.b64encode(png_of(1, 1, 99) + bytes([n]))
+        for n in range(201)
+    ),
     "a large picture": b'<image href="data:image/png;base64,%s"/>'
     % base64.b64encode(png_of(7_000, 7_000, 7_000)),
 }
@@ -145,6 +190,9 @@ SLOW = {
     "rules": b"<style>" + b"@a " * 900_000 + b"</style>",
     "rules in a rule": b"<style>@a{" + b"@a " * 900_000 + b"</style>",
     "a long rule": b"<style>@" + b"a" * 3_900_000 + b"</style>",
+    "a nest of rules": b"<style>" + b"@media screen{" * 20_000 + b"</style>",
+    "a nest of blocks": b"<style>" + b"{" * 900_000 + b"</style>",
+    "a nest of functions": b'<path style="fill:' + b"calc(" * 200_000 + b'"/>',
     "names": b"".join(b"<n%s%d/>" % (b"o" * 2_000, n) for n in range(1_500)),
 }
 
@@ -157,7 +205,10 @@ def test_few_bytes_take_no_minutes(case):
 
 
 REFUSED = {
-    "file-svg": b'<!DOCTYPE svg [<!ENTITY a "b">]>' + drawing(b"&a;"),
+    "file-svg": b'<!DOCTYPE svg [<!ENTITY a "<g/>">]>' + drawing(b"&a;"),
+    "file-svg from elsewhere": b'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/hostname">]>'
+    + drawing(b"&a;"),
+    "file-svg that unfolds": b'<!DOCTYPE svg [<!ENTITY a "%s">]>' % (b"x" * 200) + drawing(b"&a;" * 999),
     "file-svg of an attribute": b'<!DOCTYPE svg [<!ATTLIST g class CDATA "x">]>' + drawing(b"<g/>"),
     "file-broken": drawing(b"<path"),
     "file-broken of sixteen bits": b"<svg" + drawing(b"<path/>").decode().encode("utf-16"),
@@ -186,3 +237,39 @@ def test_a_plain_document_type_goes():
         b'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">'
     )
     assert b"DOCTYPE" not in taken(told + drawing(b"<path/>")).data
+
+
+def test_a_plain_short_name_is_unfolded():
+    """As Illustrator calls its own namespaces."""
+    told = b'<!DOCTYPE svg [<!ENTITY ns_ai "http://ns.adobe.com/AdobeIllustrator/10.0/">]>'
+    one = taken(told + drawing(b'<g xmlns:i="&ns_ai;" i:layer="yes"><path d="M0 0"/></g>'))
+    assert b'<g><path d="M0 0" /></g>' in one.data
+
+
+@pytest.mark.parametrize("encoding", ["gb2312", "gbk", "big5", "utf-16", "iso-8859-1"])
+def test_other_encodings_are_read(encoding):
+    word = "Rock" if encoding == "iso-8859-1" else "直裾"
+    head = f'<?xml version="1.0" encoding="{encoding}"?>'
+    one = taken((head + drawing(f"<text>{word}</text>".encode()).decode()).encode(encoding))
+    assert f"<text>{word}</text>" in one.data.decode()
+
+
+def test_a_prefix_and_a_long_head_are_no_hindrance():
+    prefixed = drawing(b"<s:path/>", root=b"s:svg").replace(b"xmlns=", b"xmlns:s=")
+    assert b"<path />" in taken(b"<!-- " + b"by me " * 999 + b"-->" + prefixed).data
+
+
+@pytest.mark.parametrize("data", ["é", "AAAA", base64.b64encode(png_of(9, 9, 9)[:45]).decode()])
+def test_a_broken_picture_within_is_left_out(data):
+    body, told = kept(f'<image href="data:image/png;base64,{data}"/><path/>')
+    assert body == "<path />"
+    assert told.endswith("image 1")
+
+
+def test_a_long_line_with_an_arrow_is_no_great_work():
+    line = b"M0 0" + b"L100 100" * 900
+    marked = b'<marker id="m"><path d="M0 0"/></marker><path marker-end="url(#m)" d="%s"/>' % line
+    none = b'<pattern id="p"><path d="M0 0"/></pattern><path style="fill:url(#p);marker:none" d="%s"/>' % line
+    dashed = b'<path stroke-dasharray="4 2" d="%s"/>' % line
+    for one in (marked, none, dashed):
+        assert "−" not in taken(drawing(one)).told

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hall_app.content import load
-from hall_app.content.search import Entry, Query, SearchIndex, entries_of, excerpt, indexed, marked
+from hall_app.content.search import MOST, Entry, Query, SearchIndex, entries_of, excerpt, indexed, marked
 
 ASSETS = Path(__file__).parents[2] / "assets"
 CONTENT = load(ASSETS)
@@ -20,7 +20,7 @@ INDEX = SearchIndex(entries_of(CONTENT))
 
 
 def found(asked: str, lang: str = "zh") -> list[tuple[str, str]]:
-    return [(one.shown.kind, one.shown.id) for one in INDEX.find(Query.of(asked), lang)]
+    return [(one.shown.kind, one.shown.id) for one in INDEX.find(Query.of(asked), lang).best]
 
 
 def test_a_run_of_chinese_is_all_its_pairs_and_its_last_character():
@@ -51,15 +51,24 @@ def test_what_is_asked_for_is_found_in_either_language(asked: str, wanted: tuple
 
 
 def test_a_thing_is_told_once_and_as_the_page_speaks():
-    both = INDEX.find(Query.of("披帛"), "en")
+    both = INDEX.find(Query.of("披帛"), "en").best
     assert len({(one.shown.kind, one.shown.id) for one in both}) == len(both)
     assert all(one.shown.lang == "en" for one in both)
     assert {one.entry.lang for one in both} >= {"zh"}, "found in the other language's text"
 
 
+def test_all_that_was_found_is_counted_and_the_best_are_listed():
+    many = SearchIndex(Entry("word", f"w{n}", "zh", f"裙{n}", "", "裙的一种", "/w") for n in range(80))
+    asked = Query.of("裙")
+    found = many.find(asked, "zh")
+    assert (found.number, len(found.best)) == (80, MOST)
+    few = INDEX.find(Query.of("褙子"), "zh")
+    assert few.number == len(few.best)
+
+
 def test_pairs_must_follow_each_other():
     apart = SearchIndex([Entry("article", "a", "zh", "子褙", "", "褙，子", "/a")])
-    assert not apart.find(Query.of("褙子"), "zh")
+    assert not apart.find(Query.of("褙子"), "zh").best
 
 
 def test_all_words_first_and_any_of_them_where_nothing_holds_all():
@@ -128,6 +137,7 @@ def test_page_and_api_tell_the_same_escaped(plain_hall, lang: str):
     told = json.loads(asked_of(plain_hall, "/api/search", q="box", lang=lang)[1])
     assert status == 200
     assert [one["id"] for one in told["found"]] == ["box"]
+    assert told["number"] == 1
     assert "#exhibit-box" in page
     status, page = asked_of(plain_hall, "/search", q='<script>alert("x")</script>', lang=lang)
     assert status == 200

@@ -15,7 +15,7 @@ MB = 1_000_000
 TRIANGLES = {"hall": 15_000, "close": MOST_TRIANGLES}
 BYTES = {"hall": 1.5 * MB, "close": 15 * MB}
 TEXTURE = 2048  # [pixels]
-FILE, FOLDER = 10 * MB, 60 * MB
+FILE, FOLDER = 10 * MB, 2_000 * MB
 
 
 def budget_problems(content: Content) -> list[Problem]:

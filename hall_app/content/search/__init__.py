@@ -6,7 +6,7 @@ there is to find; index: the index itself.
 """
 
 from hall_app.content.search.entries import KINDS, Entry, entries_of
-from hall_app.content.search.index import MOST, Found, SearchIndex
+from hall_app.content.search.index import MOST, Findings, Found, SearchIndex
 from hall_app.content.search.marking import Marked, excerpt, marked
 from hall_app.content.search.terms import LONGEST, Query, indexed
 
@@ -15,6 +15,7 @@ __all__ = [
     "LONGEST",
     "MOST",
     "Entry",
+    "Findings",
     "Found",
     "Marked",
     "Query",

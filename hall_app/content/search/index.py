@@ -13,7 +13,7 @@ from hall_app.content.search.terms import Query, indexed
 MOST = 50  # things that are told of
 _TITLE, _WORDS, _TEXT = 8.0, 8.0, 1.0  # what a find weighs where it stands
 _SCHEMA = "CREATE VIRTUAL TABLE entry USING fts5(title, words, text, tokenize='porter unicode61 remove_diacritics 2')"
-_ASK = f"SELECT rowid, bm25(entry, {_TITLE}, {_WORDS}, {_TEXT}) FROM entry WHERE entry MATCH ? ORDER BY 2 LIMIT 400"
+_ASK = f"SELECT rowid, bm25(entry, {_TITLE}, {_WORDS}, {_TEXT}) FROM entry WHERE entry MATCH ? ORDER BY 2"
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,14 @@ class Found:
 
     shown: Entry
     entry: Entry
+
+
+@dataclass(frozen=True)
+class Findings:
+    """best: MOST of what was found; number: of all that was."""
+
+    best: tuple[Found, ...] = ()
+    number: int = 0
 
 
 class SearchIndex:
@@ -36,13 +44,13 @@ class SearchIndex:
         rows = ((k, indexed(e.title), indexed(e.words), indexed(e.text)) for k, e in enumerate(self._entries))
         self._base.executemany("INSERT INTO entry(rowid, title, words, text) VALUES (?, ?, ?, ?)", rows)
 
-    def find(self, query: Query, lang: str) -> tuple[Found, ...]:
+    def find(self, query: Query, lang: str) -> Findings:
         """What holds all that is asked for, the best first; where nothing does, what holds any of it.
 
         A thing is found in either language and told once, in `lang` where the two serve alike.
         """
         if not query.parts:
-            return ()
+            return Findings()
         ranked = self._ranked(query.match()) or self._ranked(query.match(every=False))
         best: dict[tuple[str, str], tuple[float, Entry]] = {}
         for row, score in ranked:
@@ -52,7 +60,8 @@ class SearchIndex:
             if key not in best or score < best[key][0]:
                 best[key] = (score, entry)
         ordered = sorted(best.values(), key=lambda one: (one[0], KINDS.index(one[1].kind), one[1].id))
-        return tuple(Found(self._of.get((e.kind, e.id, lang), e), e) for _, e in ordered[:MOST])
+        shown = tuple(Found(self._of.get((e.kind, e.id, lang), e), e) for _, e in ordered[:MOST])
+        return Findings(shown, len(ordered))
 
     def _ranked(self, match: str) -> list[tuple[int, float]]:
         with self._asking:

@@ -59,6 +59,7 @@ _ARCHIVES = (
     b"\xfd7zXZ",
     b"\x28\xb5\x2f\xfd",
 )
+_DRAWING = re.compile(rb"<(?:[\w-]+:)?svg|^\W*<(?:\?xml|!--)", re.IGNORECASE)
 _OBJ = re.compile(rb"(#.*|(v|vt|vn|vp|f|l|p|o|g|s|mtllib|usemtl)( .*)?|)\r?")
 
 
@@ -126,7 +127,8 @@ def _kind(shown: str, head: bytes, use: str) -> tuple[str, str]:
         return "scan", ".ply"
     if head.startswith(_ARCHIVES):
         raise PeopleError("file-archive", name=shown)
-    if b"<svg" in head.lower():
+    # A picture by what follows the XML's head, which may be long; sixteen bits a character count as eight.
+    if _DRAWING.search(head.replace(b"\0", b"")):
         return "picture", ".svg"
     lines = head.split(b"\n")[:-1] if len(head) == 4096 else head.split(b"\n")
     if use == "scan" and any(line.startswith(b"v ") for line in lines) and all(map(_OBJ.fullmatch, lines)):

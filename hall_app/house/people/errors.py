@@ -190,12 +190,16 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "Give a title in Chinese and in English, 120 characters each at most.",
     ),
     "occasion-text": (
-        "说明最多 4000 字，地点最多 120 字。",
-        "A text has 4000 characters at most, a place 120.",
+        "说明最多 4000 字，地点最多 120 字，不含控制字符。",
+        "A text has 4000 characters at most, a place 120, and no control characters.",
+    ),
+    "occasion-kind": (
+        "类别须为 activity（活动）或 visit（参观）。",
+        'The kind is "activity" or "visit".',
     ),
     "changed": (
-        "{name} 在此期间已被改动。下面并列两个版本，请合并后再保存。",
-        "{name} was changed meanwhile. Both versions stand below: put them together, and save again.",
+        "{name} 在此期间已被改动。页面上并列两个版本，请合并后再保存。",
+        "{name} was changed meanwhile. Put both versions together, which the page shows, and save again.",
     ),
     "occasion-changed": (
         "在您查看之后，此场已被他人改动。表中仍是您所写的；再保存一次，即以您的为准。",

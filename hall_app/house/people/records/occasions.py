@@ -58,12 +58,14 @@ class Plan:
         if (
             max(map(len, (self.text_zh, self.text_en))) > LONGEST_TEXT
             or max(map(len, places)) > LONGEST_TITLE
+            or not all(_legible(text) for text in (self.text_zh, self.text_en, *places))
         ):
             raise PeopleError("occasion-text")
-        kind = "visit" if self.kind == "visit" else "activity"
+        if self.kind not in ("activity", "visit"):
+            raise PeopleError("occasion-kind")
         # SQLite keeps the clock of what it is given and not its zone.
         times = {"begins": self.begins.astimezone(UTC), "ends": self.ends.astimezone(UTC)}
-        return replace(self, kind=kind, title_zh=titles[0], title_en=titles[1], **times)
+        return replace(self, title_zh=titles[0], title_en=titles[1], **times)
 
 
 @dataclass(frozen=True)
@@ -179,6 +181,11 @@ class Occasions:
             row = update(table).where(table.c.id == key, table.c.cancelled.is_(None)).values(cancelled=now())
             if not connection.execute(row).rowcount:
                 raise PeopleError("no-occasion")
+
+
+def _legible(text: str) -> bool:
+    """In lines, without characters that calendars must not hold."""
+    return all(letter.isprintable() or letter in "\n\r\t" for letter in text)
 
 
 def _listed(kind: str, *, past: bool = False, off: bool = False) -> tuple[ColumnElement[bool], ...]:

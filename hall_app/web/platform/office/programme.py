@@ -205,22 +205,22 @@ class _Rooms:
 
     def _sheet(self, asking: Asking, one: Occasion) -> str:
         word, lines = asking.word, []
-        for made in self._bookings(one):
+        booked = [(made, self._people.accounts.of(made.person)) for made in self._bookings(one)]
+        names = [person.name for _, person in booked]
+        for made, person in booked:
             at = f"/office/events/{one.id}/bookings/{made.id}"
-            person = self._people.accounts.of(made.person)
-            name = person.name or person.address
+            alone = person.name and names.count(person.name) == 1
+            name = person.name if alone else f"{person.name} {person.address}".strip()
             here = made.arrived is not None
             seen = {"about": name, "hidden": {"turn": str(made.turn)}}
-            check = (
-                button(asking, "leave", f"{at}/leave", word("撤销签到", "Undo"), **seen)
-                if here
-                else button(asking, "arrive", f"{at}/arrive", word("签到", "Check in"), **seen)
-            )
+            act = "leave" if here else "arrive"
+            called = word("撤销签到", "Undo") if here else word("签到", "Check in")
+            may = asking.person.may("check-in") and not made.place
+            check = button(asking, act, f"{at}/{act}", called, **seen) if may else ""
             away = button(asking, "cancel", f"{at}/cancel", word("取消", "Cancel"), **seen)
             waits = word(f"候补第 {made.place} 位", f"waiting, {made.place}")
             state = waits if made.place else word("已签到", "here") if here else word("已约", "booked")
-            may = asking.person.may("check-in") and not made.place
-            deeds = f'<div class="deeds">{check if may else ""}{away}</div>'
+            deeds = f'<div class="deeds">{check}{away}</div>'
             lines.append((escape(name), escape(made.party), str(made.size), state, deeds))
         if not lines:
             return f"<p>{word('还没有预约。', 'Nobody has booked yet.')}</p>"

@@ -1,0 +1,305 @@
+"""What is kept of a drawing's tree: elements and attributes that draw, and what is said of them in styles.
+
+Programs, animations, links, filters, addresses beyond the file, embedded documents, comments and what editors note of
+themselves are left out; embedded pictures are drawn anew.
+"""
+
+from __future__ import annotations
+
+import base64
+import codecs
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError, ParserCreate
+
+import tinycss2
+
+from hall_app.content.models import PictureError, picture_size
+from hall_app.house.drafts.drawing.cost import MOST_DEEP, draws_too_much
+from hall_app.house.drafts.drawing.styles import (
+    PROPERTIES,
+    TooMuch,
+    clean,
+    declared,
+    plain,
+    target,
+    told_by_sheets,
+)
+from hall_app.house.people import PeopleError
+
+__all__ = ["redrawn"]
+
+_SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
+_SHAPES = "path rect circle ellipse line polyline polygon text image use"
+_DRAWN = frozenset(
+    f"svg g defs symbol switch title desc {_SHAPES} tspan textPath linearGradient radialGradient stop pattern "
+    "clipPath mask marker".split()
+)
+_TEXTS = frozenset(("text", "tspan", "textPath"))
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]*")
+_UNUSED = (
+    "on",
+    "filter",
+    "begin",
+    "end",
+    "dur",
+    "values",
+    "pathlength",
+)  # how names begin that draw nothing here
+_PICTURE = re.compile(r"data:image/(?:png|jpe?g|webp)\s*(?:;[\w=-]+\s*)*;\s*base64\s*,", re.IGNORECASE)
+_TYPES = {".png": "png", ".jpg": "jpeg", ".webp": "webp"}
+_XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
+
+_DECLARED = re.compile(rb"^\s*<\?xml[^>]*?encoding\s*=\s*[\"']([\w-]+)[\"'][^>]*\?>")
+_DECLARATION = re.compile(r"^\s*<\?xml[^>]*\?>")
+# What expat does not read by itself, and what it is read as.
+_ENCODINGS = {
+    "gb2312": "gb18030",
+    "gbk": "gb18030",
+    "gb18030": "gb18030",
+    "big5": "big5hkscs",
+    "shift_jis": "cp932",
+}
+
+_LONGEST_SPACE = 200  # characters of a namespace's name, which every name of the tree repeats
+_MOST_WRITTEN = 60_000  # elements of the file
+_MOST_ATTRIBUTES = 300_000
+_MOST_ENTITIES, _LONGEST_ENTITY, _MOST_UNFOLDED = 20, 200, 100_000
+_MOST_PICTURES, _MOST_PIXELS = 200, 20_000_000  # pictures within, and pixels of all of them
+_MOST_STYLED = 1_000_000  # characters of style attributes that differ
+_MOST_TOLD = 8
+
+
+def redrawn(
+    name: str, data: bytes, picture: Callable[[str, bytes], tuple[bytes, str, str]]
+) -> tuple[bytes, str]:
+    """(SVG, what is known of it). name: for messages; picture: draws an embedded picture anew, as (bytes, ending, …).
+
+    Raises PeopleError.
+    """
+    cleaning = _Cleaning(name, picture)
+    try:
+        root = cleaning.kept(_tree(name, data), "svg")
+        told, sheet = told_by_sheets(cleaning.sheets, root, cleaning.left)
+        said = {
+            one: [*one.attrib.items(), *told.get(one, ()), *cleaning.said.get(one, ())] for one in root.iter()
+        }
+        if draws_too_much(root, said):
+            raise TooMuch
+    except (TooMuch, RecursionError):  # what nests in styles is followed as it nests
+        raise PeopleError("file-svg-drawn", name=name) from None
+    if sheet:
+        root.insert(0, ElementTree.Element("style"))
+        root[0].text = sheet
+    root.set("xmlns", _SVG)
+    known = " × ".join(_measures(root))
+    if cleaning.left:
+        most = sorted(cleaning.left.most_common(_MOST_TOLD))
+        known += " · − " + ", ".join(f"{key} {count}" for key, count in most)
+    return ElementTree.tostring(root, "utf-8", xml_declaration=True), known.removeprefix(" · ")
+
+
+def _tree(name: str, data: bytes) -> ElementTree.Element:
+    """Looked through before it is read: what is declared, an entity or an attribute, may be small as a file alone."""
+    try:
+        data = _as_utf8(name, data)
+        _look_through(name, data)
+        root = ElementTree.fromstring(data)
+    except PeopleError:
+        raise
+    except (ExpatError, ElementTree.ParseError, ValueError, LookupError) as error:
+        raise PeopleError("file-broken", name=name, why=str(error)[:120]) from None
+    if _local(root.tag) != "svg":
+        raise PeopleError("file-kind", name=name)
+    return root
+
+
+def _as_utf8(name: str, data: bytes) -> bytes:
+    """As it is where expat reads it. Raises PeopleError, or ValueError of the decoder."""
+    told = _DECLARED.match(data)
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        text = data.decode("utf-16")
+    elif told is not None and (known := _ENCODINGS.get(told[1].decode().lower())):
+        text = data.decode(known)
+    elif b"\0" in data:
+        raise PeopleError("file-broken", name=name, why="it is no UTF-8")
+    else:
+        return data
+    return _DECLARATION.sub("", text).encode()
+
+
+def _look_through(name: str, data: bytes) -> None:
+    """Raises PeopleError for declarations but the short names some programs give to addresses, and for what is too deep
+    or too long; ExpatError for what is no XML."""
+    depth = count = given = 0
+    entities: list[str] = []
+
+    def refuse(*_: object) -> None:
+        raise PeopleError("file-svg", name=name)
+
+    def entity(called: str, parameter: bool, value: str | None, *_: object) -> None:
+        entities.append(called)
+        unfolded = data.count(f"&{called};".encode()) * len(value or "")
+        if (
+            parameter
+            or value is None
+            or set("&<%") & set(value)
+            or len(value) > _LONGEST_ENTITY
+            or len(entities) > _MOST_ENTITIES
+            or unfolded > _MOST_UNFOLDED
+        ):
+            refuse()
+
+    def begin(_: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count, given
+        depth, count, given = depth + 1, count + 1, given + len(attributes)
+        spaces = (len(value) for key, value in attributes.items() if key.startswith("xmlns"))
+        much = count > _MOST_WRITTEN or given > _MOST_ATTRIBUTES
+        if depth > MOST_DEEP or much or max(spaces, default=0) > _LONGEST_SPACE:
+            raise PeopleError("file-svg-drawn", name=name)
+
+    def end(_: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser = ParserCreate()
+    parser.EntityDeclHandler, parser.AttlistDeclHandler = entity, refuse
+    parser.StartElementHandler, parser.EndElementHandler = begin, end
+    parser.Parse(data, True)
+
+
+@dataclass
+class _Cleaning:
+    """left: what was left out, and how often; sheets: (media, text) of style sheets; said: by style attributes."""
+
+    name: str
+    picture: Callable[[str, bytes], tuple[bytes, str, str]]
+    left: Counter[str] = field(default_factory=Counter)
+    sheets: list[tuple[str, str]] = field(default_factory=list)
+    said: dict[ElementTree.Element, list[tuple[str, str]]] = field(default_factory=dict)
+    styles: dict[str, tuple[str, list[tuple[str, str]], Counter[str]]] = field(default_factory=dict)
+    styled: int = 0
+    pictures: dict[str, str | None] = field(default_factory=dict)
+    pixels: int = 0
+
+    def kept(self, source: ElementTree.Element, tag: str) -> ElementTree.Element:
+        """The element with what draws of it under that name, its names without a namespace."""
+        made = ElementTree.Element(tag)
+        for name, value in source.attrib.items():
+            self._attribute(made, name, value)
+        made.text = source.text
+        for child in source:
+            local = _local(child.tag)
+            if local == "a":  # a link leads nowhere from a picture; what it holds is drawn
+                local = "tspan" if tag in _TEXTS else "g"
+            if local in _DRAWN and (local != "image" or self._embedded(child)):
+                made.append(self.kept(child, local))
+                made[-1].tail = child.tail
+                continue
+            if local == "style" and child.get("type", "").strip().lower() in ("", "text/css"):
+                self.sheets.append((child.get("media", ""), "".join(child.itertext())))
+            elif local not in ("", "metadata"):  # what an editor notes for itself is no loss
+                self.left[local[:20]] += 1
+            if child.tail and len(made):
+                made[-1].tail = (made[-1].tail or "") + child.tail
+            elif child.tail:
+                made.text = (made.text or "") + child.tail
+        return made
+
+    def _attribute(self, made: ElementTree.Element, name: str, value: str) -> None:
+        space, _, local = name.rpartition("}")
+        if name == _XML_SPACE:
+            made.set(name, value)
+        elif local == "href" and space in ("", "{" + _XLINK):
+            kept = value.strip() if made.tag == "image" else (named := target(value)) and f"#{named}"
+            if kept is None:
+                self.left["href"] += 1
+            elif not space or "href" not in made.attrib:
+                made.set("href", kept)
+        elif space or not _NAME.fullmatch(local) or local.startswith("data-"):
+            return
+        elif local.lower().startswith(_UNUSED):
+            self.left[local[:20]] += 1
+        elif local in ("id", "class"):
+            made.set(local, value)
+        elif local == "style":
+            self._style(made, value)
+        elif (kept := _value(local, value)) is None:
+            self.left[local[:20]] += 1
+        else:
+            made.set(local, kept)
+
+    def _style(self, made: ElementTree.Element, value: str) -> None:
+        """Programs say the same of many elements; it is read once."""
+        if value not in self.styles:
+            self.styled += len(value)
+            if self.styled > _MOST_STYLED:
+                raise PeopleError("file-svg-drawn", name=self.name)
+            left = Counter[str]()
+            said, stressed = declared(value, left)
+            lines = [f"{key}:{one}" for key, one in said.items()]
+            lines += [f"{key}:{one}!important" for key, one in stressed.items()]
+            self.styles[value] = (";".join(lines), [*said.items(), *stressed.items()], left)
+        written, told, left = self.styles[value]
+        self.left += left
+        if told:
+            made.set("style", written)
+            self.said[made] = told
+
+    def _embedded(self, element: ElementTree.Element) -> bool:
+        """Whether the picture lies in the file, and can be drawn; it is drawn anew then."""
+        keys = [name for name in element.attrib if name.rpartition("}")[2] == "href"]
+        given = element.get(keys[0], "").strip() if keys else ""
+        if given not in self.pictures:
+            self.pictures[given] = self._drawn_anew(given)
+        if (anew := self.pictures[given]) is None:
+            return False
+        for name in keys:
+            del element.attrib[name]
+        element.set("href", anew)
+        return True
+
+    def _drawn_anew(self, given: str) -> str | None:
+        head = _PICTURE.match(given)
+        if head is None:
+            return None
+        try:
+            data = base64.b64decode(given[head.end() :])
+            width, height = picture_size(data)
+            self.pixels += width * height
+            if self.pixels > _MOST_PIXELS or len(self.pictures) >= _MOST_PICTURES:
+                raise PeopleError("file-svg-drawn", name=self.name)
+            data, ending, _ = self.picture(self.name, data)
+        except PeopleError as error:
+            if error.key != "file-broken":
+                raise
+            return None
+        except (ValueError, PictureError):  # no base64, no picture
+            return None
+        return f"data:image/{_TYPES[ending]};base64,{base64.b64encode(data).decode()}"
+
+
+def _value(name: str, value: str) -> str | None:
+    """What an attribute may say; None: it asks for something beyond the file, or hides what it asks for."""
+    read = name in PROPERTIES and (name in ("clip-path", "mask", "stroke-dasharray") or not plain(value))
+    if not read:
+        return value if plain(value) else None
+    return clean(name, tinycss2.parse_component_value_list(value, skip_comments=True))
+
+
+def _local(tag: object) -> str:
+    """The name of an SVG element, empty for one of another namespace, a comment or an instruction."""
+    space, _, local = str(tag).rpartition("}")
+    return local if isinstance(tag, str) and space in ("", "{" + _SVG) else ""
+
+
+def _measures(root: ElementTree.Element) -> Iterator[str]:
+    """Its width and height as it says them, else those of its frame."""
+    frame = (root.get("viewBox") or "").replace(",", " ").split()
+    sides = [root.get("width") or "", root.get("height") or ""]
+    for side, other in zip(sides, frame[2:4] if len(frame) == 4 else ("", ""), strict=True):
+        if side or other:
+            yield (side or other)[:20]

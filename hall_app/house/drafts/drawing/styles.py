@@ -1,0 +1,314 @@
+"""What style sheets and style attributes say of a drawing's elements: the properties that draw, from the file alone.
+
+tinycss2 reads them, escapes and comments included. A sheet is written anew, one class for all elements it tells the
+same: so every reference belongs to known elements, and no browser has selectors to weigh.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from urllib.parse import unquote
+from xml.etree.ElementTree import Element
+
+import tinycss2
+from tinycss2.ast import FunctionBlock, Node, URLToken
+
+__all__ = ["PROPERTIES", "REFERENCE", "TooMuch", "clean", "declared", "plain", "target", "told_by_sheets"]
+
+REFERENCE = re.compile(r"url\(#([^)]+)\)")  # as they are written here
+
+PROPERTIES = frozenset(
+    "alignment-baseline baseline-shift clip-path clip-rule color color-interpolation color-rendering cx cy direction "
+    "display dominant-baseline fill fill-opacity fill-rule font font-family font-feature-settings font-kerning "
+    "font-size font-size-adjust font-stretch font-style font-variant font-variant-caps font-variant-east-asian "
+    "font-variant-ligatures font-variant-numeric font-variation-settings font-weight height image-rendering isolation "
+    "letter-spacing line-height marker marker-end marker-mid marker-start mask mask-type mix-blend-mode opacity "
+    "overflow paint-order r rx ry shape-rendering stop-color stop-opacity stroke stroke-dasharray stroke-dashoffset "
+    "stroke-linecap stroke-linejoin stroke-miterlimit stroke-opacity stroke-width text-align text-anchor "
+    "text-decoration text-decoration-color text-decoration-line text-decoration-style text-decoration-thickness "
+    "text-indent text-orientation text-rendering text-transform transform transform-box transform-origin "
+    "unicode-bidi vector-effect visibility white-space width word-spacing writing-mode x y".split()
+)
+_FUNCTIONS = frozenset(
+    "calc circle clamp color color-mix ellipse hsl hsla hwb inset lab lch light-dark matrix max min oklab oklch "
+    "polygon rgb rgba rotate scale scalex scaley skewx skewy translate translatex translatey".split()
+)
+_CALLED = re.compile(r"([\w-]*)\(")
+_NAMED = re.compile(r"#[^\s'\"()\\%<>;{}]+")
+_SCREENS = frozenset(("", "all", "screen", "only screen"))
+# Properties that no child takes from its parent: asked for so, each child would draw its parent's target once more.
+_ALONE = frozenset(("clip-path", "mask"))
+_LENGTHS = re.compile(r"([\d.]+(?:e[+-]?\d+)?)(px|pt|pc|mm|cm|in)?", re.IGNORECASE)
+_DATA = re.compile(r"url\(\s*[\"']?data:[^)]*\)", re.IGNORECASE)  # letters that programs bring with them
+_MOST_READ = 300_000  # characters of all sheets
+_MOST_WEIGHED = 500_000  # parts of selectors, each for each element
+_MOST_TOLD = 2_000_000  # characters of all classes
+
+
+class TooMuch(Exception):
+    """Few rules, but more work than any drawing is worth."""
+
+
+@dataclass(frozen=True)
+class Compound:
+    """`path.seam#one`: a part of a selector; kind: "" for any."""
+
+    kind: str = ""
+    key: str = ""
+    classes: frozenset[str] = frozenset()
+    child: bool = False  # of the part before, not only somewhere below it
+
+    def fits(self, element: Element, classes: frozenset[str]) -> bool:
+        return (
+            self.kind in ("", element.tag)
+            and self.key in ("", element.get("id", ""))
+            and self.classes <= classes
+        )
+
+
+@dataclass(frozen=True)
+class Selected:
+    """A rule by one selector. weight: specificity and place in the file."""
+
+    parts: tuple[Compound, ...]
+    weight: tuple[int, int, int, int]
+    said: Mapping[str, str]  # property -> value
+    stressed: Mapping[str, str]  # !important
+
+
+def target(reference: str) -> str | None:
+    """The name that "#name" refers to; None where it leads out of the file, or browsers would read it otherwise."""
+    name = unquote(reference.strip())
+    return name[1:] if _NAMED.fullmatch(name) else None
+
+
+def plain(value: str) -> bool:
+    """Whether an attribute's value asks for nothing, seen without reading it as CSS."""
+    if "\\" in value or "/*" in value:
+        return False
+    return "(" not in value or all(name.lower() in _FUNCTIONS for name in _CALLED.findall(value))
+
+
+def clean(name: str, tokens: Iterable[Node]) -> str | None:
+    """A property's value; None: it asks for something beyond the file, or does what no drawing needs."""
+    kept = [_clean(token) for token in tokens]
+    if None in kept:
+        return None
+    value = tinycss2.serialize([token for token in kept if token is not None]).strip()
+    if name in _ALONE and value.lower() in ("inherit", "unset", "revert", "revert-layer"):
+        return None
+    return None if name == "stroke-dasharray" and not _dashes_known(value) else value
+
+
+def declared(style: str | Sequence[Node], left: Counter[str]) -> tuple[dict[str, str], dict[str, str]]:
+    """What a style attribute or a rule's block says, (as it is, as important). left: counts what was left out."""
+    said: tuple[dict[str, str], dict[str, str]] = ({}, {})
+    for one in tinycss2.parse_blocks_contents(style, skip_comments=True, skip_whitespace=True):
+        if one.type != "declaration":
+            left["style"] += 1
+        elif one.lower_name not in PROPERTIES:
+            if one.lower_name.endswith("filter") or any(map(_asks, one.value)):
+                left[one.lower_name[:20]] += 1
+        elif (value := clean(one.lower_name, one.value)) is None:
+            left[one.lower_name[:20]] += 1
+        else:
+            said[one.important][one.lower_name] = value
+    return said
+
+
+def told_by_sheets(
+    sheets: Iterable[tuple[str, str]], root: Element, left: Counter[str]
+) -> tuple[dict[Element, list[tuple[str, str]]], str]:
+    """What style sheets, (media, text), say of each element, and the sheet that says it by classes, which the elements
+    now have. Raises TooMuch."""
+    rules: list[Selected] = []
+    read = 0
+    for media, text in sheets:
+        if _shown(media):
+            text = _DATA.sub("url()", text)
+            read += len(text)
+            if read > _MOST_READ:
+                raise TooMuch
+            for rule in _rules(tinycss2.parse_stylesheet(text, True, True), left):
+                rules += _selected(rule, len(rules), left)
+    told: dict[Element, list[tuple[str, str]]] = {}
+    classes: dict[str, str] = {}  # block -> class
+    found = _Matches(rules)
+    size = 0
+    for element, matched in found.walk(root):
+        element.attrib.pop("class", None)
+        if not matched:
+            continue
+        merged, stressed = {}, {}
+        for rule in sorted(matched, key=lambda one: one.weight):
+            merged |= rule.said
+            stressed |= rule.stressed
+        lines = [f"{key}:{value}" for key, value in merged.items()]
+        lines += [f"{key}:{value}!important" for key, value in stressed.items()]
+        block = ";".join(lines)
+        if not block:
+            continue
+        if block not in classes:
+            size += len(block)
+            if size > _MOST_TOLD:
+                raise TooMuch
+        element.set("class", classes.setdefault(block, f"c{len(classes) + 1}"))
+        told[element] = [*merged.items(), *stressed.items()]
+    return told, "".join(f".{name}{{{block}}}\n" for block, name in classes.items())
+
+
+class _Matches:
+    """The rules, by what the last part of their selector asks for, and how much has been weighed."""
+
+    def __init__(self, rules: Iterable[Selected]) -> None:
+        self.weighed = 0
+        self.of: dict[str, list[Selected]] = defaultdict(list)
+        for rule in rules:
+            last = rule.parts[-1]
+            one = next(iter(sorted(last.classes)), "")
+            key = f"#{last.key}" if last.key else f".{one}" if one else last.kind or "*"
+            self.of[key].append(rule)
+
+    def walk(self, root: Element) -> Iterator[tuple[Element, list[Selected]]]:
+        """Each element with the rules that are meant for it."""
+        above: list[tuple[Element, frozenset[str]]] = []
+
+        def visit(element: Element) -> Iterator[tuple[Element, list[Selected]]]:
+            classes = frozenset(element.get("class", "").split())
+            above.append((element, classes))
+            keys = ("*", element.tag, f"#{element.get('id', '')}", *(f".{one}" for one in classes))
+            rules = (rule for key in keys for rule in self.of.get(key, ()))
+            matched = [
+                rule for rule in rules if self._fits(rule.parts, len(rule.parts) - 1, above, len(above) - 1)
+            ]
+            # Below the element its classes are still asked for: it loses them when all below is seen.
+            for child in element:
+                yield from visit(child)
+            above.pop()
+            yield element, matched
+
+        if self.of:
+            yield from visit(root)
+        else:
+            yield from ((element, []) for element in root.iter())
+
+    def _fits(
+        self,
+        parts: tuple[Compound, ...],
+        k: int,
+        above: Sequence[tuple[Element, frozenset[str]]],
+        at: int,
+    ) -> bool:
+        self.weighed += 1
+        if self.weighed > _MOST_WEIGHED:
+            raise TooMuch
+        if not parts[k].fits(*above[at]):
+            return False
+        if k == 0:
+            return True
+        reach = range(at - 1, at - 2, -1) if parts[k].child else range(at - 1, -1, -1)
+        return any(self._fits(parts, k - 1, above, one) for one in reach if one >= 0)
+
+
+def _shown(media: str) -> bool:
+    return any(" ".join(one.lower().split()) in _SCREENS for one in media.split(","))
+
+
+def _rules(rules: Iterable[Node], left: Counter[str]) -> Iterator[Node]:
+    """Those of @media that mean a screen included."""
+    for rule in rules:
+        if rule.type == "qualified-rule":
+            yield rule
+        elif (
+            rule.type == "at-rule"
+            and rule.lower_at_keyword == "media"
+            and rule.content is not None
+            and _shown(tinycss2.serialize(rule.prelude))
+        ):
+            yield from _rules(tinycss2.parse_rule_list(rule.content, True, True), left)
+        else:
+            left["@" if rule.type == "at-rule" else "style"] += 1
+
+
+def _selected(rule: Node, before: int, left: Counter[str]) -> Iterator[Selected]:
+    said, stressed = declared(rule.content, left)
+    selectors: list[list[Node]] = [[]]
+    for token in rule.prelude:
+        if token == ",":
+            selectors.append([])
+        elif token.type != "comment":
+            selectors[-1].append(token)
+    for number, selector in enumerate(selectors):
+        parts = _parts(selector)
+        if parts is None:
+            left["style"] += 1
+            continue
+        keys = sum(bool(part.key) for part in parts)
+        classes = sum(len(part.classes) for part in parts)
+        yield Selected(
+            parts, (keys, classes, sum(bool(part.kind) for part in parts), before + number), said, stressed
+        )
+
+
+def _parts(selector: Sequence[Node]) -> tuple[Compound, ...] | None:
+    """None: it selects by more than elements, classes and names, and what they lie in."""
+    found: list[Compound] = []
+    kind, key, classes, child, any_kind = "", "", set[str](), False, False
+    tokens = [*selector, None]
+    k = 0
+    while k < len(tokens):
+        token = tokens[k]
+        ends = token is None or token.type == "whitespace" or token == ">"
+        if ends and (kind or key or classes or any_kind):
+            found.append(Compound(kind, key, frozenset(classes), child))
+            kind, key, classes, child, any_kind = "", "", set[str](), False, False
+        if token is None or token.type == "whitespace":
+            pass
+        elif token == ">":
+            if child or not found:
+                return None
+            child = True
+        elif token == "*":
+            any_kind = True
+        elif token.type == "ident" and not (kind or key or classes):
+            kind = token.value
+        elif token.type == "hash" and token.is_identifier:
+            key = token.value
+        elif token == "." and getattr(tokens[k + 1], "type", "") == "ident":
+            k += 1
+            classes.add(tokens[k].value)
+        else:
+            return None
+        k += 1
+    return None if child or not found else tuple(found)
+
+
+def _clean(token: Node) -> Node | None:
+    if token.type == "url":
+        name = target(token.value)
+    elif token.type == "function" and token.lower_name == "url":
+        given = [one for one in token.arguments if one.type not in ("whitespace", "comment")]
+        name = target(given[0].value) if len(given) == 1 and given[0].type == "string" else None
+    elif token.type == "function":
+        kept = [_clean(one) for one in token.arguments]
+        if token.lower_name not in _FUNCTIONS or None in kept:
+            return None
+        return FunctionBlock(token.source_line, token.source_column, token.name, kept)
+    else:
+        allowed = "comment dimension hash ident literal number percentage string unicode-range whitespace"
+        return token if token.type in allowed.split() else None
+    return name and URLToken(token.source_line, token.source_column, name, f"url(#{name})")
+
+
+def _asks(token: Node) -> bool:
+    return token.type == "url" or (token.type == "function" and token.lower_name not in _FUNCTIONS)
+
+
+def _dashes_known(value: str) -> bool:
+    """Whether it is told how long dashes are: a share of a frame or of a letter may be of any length."""
+    if value.lower() in ("none", "inherit", "initial"):
+        return True
+    return all(_LENGTHS.fullmatch(one) for one in value.replace(",", " ").split())
