@@ -51,6 +51,14 @@ HONEST = {
         + b'<marker id="a" markerWidth="2" markerHeight="2"><circle r="1" fill="red"/></marker>'
         + b'<path d="M1 8h6" style="marker:url(#a);stroke:#00f"/><use href="#%70" x="1" fill="lime"/>',
     ),
+    "short and long properties in turn": styled(
+        b".t{font-size:1px} .t{font:2px serif} #w{font-size:5px}", b'<text id="w" class="t" y="6">abc</text>'
+    ),
+    "what later rules say": styled(
+        b".b:hover,.b:focus,.b{fill:red} .b{fill:blue} .c.c{fill:tan} .c{fill:teal}"
+    ),
+    "a coloured ground": drawing(GIVEN).replace(b"<svg", b'<svg style="background-color:gold"'),
+    "links": styled(b"a{fill:red} g{fill:blue}", b"<a href='x'>" + GIVEN + b"</a>"),
     "a word": drawing(
         "<text y='6' style=\"font:italic 4px 'Noto Serif CJK SC', serif\">直裾</text>".encode()
     ),

@@ -91,9 +91,21 @@ LEFT_OUT = {
     '<style>.a{clip-path:url("#c")}</style><clipPath id="c"/><rect class="a"/>': (
         f'{ONE % "clip-path:url(#c)"}<clipPath id="c" /><rect class="c1" />'
     ),
-    "<style>rect{fill:red;x:1} #o{fill:blue} * {fill:tan;y:2!important}</style><rect id='o'/>": (
-        "<style>.c1{fill:blue;x:1;y:2!important}\n.c2{fill:tan;y:2!important}\n</style>"  # of the root
+    "<style>rect{fill:red;color:red} #o{fill:blue} * {fill:tan;opacity:1!important}</style><rect id='o'/>": (
+        "<style>.c1{color:red;fill:blue;opacity:1!important}\n.c2{fill:tan;opacity:1!important}\n</style>"
         '<rect id="o" class="c1" />'
+    ),
+    '<style>.b:hover,.b:focus,.a{fill:red} .a{fill:blue}</style><rect class="a"/>': (
+        f'{ONE % "fill:blue"}<rect class="c1" />'
+    ),
+    '<style>.a{font-size:1px} .a{font:2px serif} .b{font-size:9px}</style><text class="a b"/>': (
+        f'{ONE % "font:2px serif;font-size:9px"}<text class="c1" />'
+    ),
+    '<style>.a.a{fill:red} .a{fill:tan} a{stroke:red} g{stroke:tan}</style><a><rect class="a"/></a>': (
+        '<style>.c1{fill:red}\n.c2{stroke:red}\n</style><g class="c2"><rect class="c1" /></g>'
+    ),
+    '<g stroke-dasharray="1"><text style="fill:red">a</text><path d="M0 0h9"/></g>': (
+        '<g stroke-dasharray="1"><text style="fill:red;stroke-dasharray:none!important">a</text><path d="M0 0h9" /></g>'
     ),
     '<g id="image (1)"/><use href="#%61"/><use href="#a&#10;b"/>': '<g id="image (1)" /><use href="#a" /><use />',
     '<text xml:space="preserve">m<sup>2</sup> of <set/>silk</text>': '<text xml:space="preserve">m of silk</text>',
@@ -125,7 +137,7 @@ def test_a_picture_within_is_drawn_anew():
     assert Image.open(io.BytesIO(again)).size == (20, 10)
 
 
-SAID = b"fill stroke color font-family opacity mask display direction overflow cx cy r".split()
+SAID = b"fill stroke color font-family opacity display direction overflow mask marker font visibility".split()
 ENDLESS = {
     "uses of uses": doubled(40),
     "a circle": b'<g id="a"><use href="#a"/></g>',
@@ -159,11 +171,29 @@ ENDLESS = {
     "rules": b"<style>" + b"*{x:1}" * 99_999 + b"</style>",
     "what rules say": b"<style>%s</style>%s"
     % (
-        b"".join(b".a%d{%s:%s}" % (n, key, b"x" * 20_000) for n, key in enumerate(SAID)),
+        b"".join(b".a%d{%s:%s}" % (n, key, b"x" * 1_999) for n, key in enumerate(SAID)),
         b"".join(
-            b'<g class="%s"/>' % b" ".join(b"a%d" % n for n in range(len(SAID)) if n != one)
-            for one in range(len(SAID))
+            b'<g class="%s"/>' % b" ".join(b"a%d" % n for n in range(len(SAID)) if one >> n & 1)
+            for one in range(400)
         ),
+    ),
+    "patterns that lie in what they paint": b'<rect fill="url(#p0)"/>'
+    + b"".join(
+        b'<g fill="url(#p%d)" stroke="url(#p%d)"><pattern id="p%d"/></g>' % (n + 1, n + 1, n)
+        for n in range(40)
+    ),
+    "a line back to an edge": b'<g stroke-dasharray=".5">%s</g>' % (b'<path d="M200000 9H0"/>' * 999),
+    "many short dashes": b'<g stroke-dasharray="%s">%s</g>' % (b".01 " * 99, b'<path d="M0 0h99"/>' * 9_999),
+    "a line without end": b'<path stroke-dasharray="1" d="M0 0h1e999"/>',
+    "a line that is nowhere": b'<path stroke-dasharray="1" d="M1e999 0L1e999 0"/>',
+    "masks of leaves": b'<mask id="m"/>' + b'<rect mask="url(#m)"/>' * 9_999,
+    "letters that clip": b'<clipPath id="c"><text>a</text></clipPath>'
+    + b'<rect clip-path="url(#c)"/>' * 9_999,
+    "paint that markers take over": b'<pattern id="p">%s</pattern><marker id="m">%s</marker>%s'
+    % (
+        b"<rect/>" * 99,
+        b'<rect fill="context-fill"/>' * 99,
+        b'<path fill="url(#p)" style="marker:url(#m)" d="M0 0%s"/>' % (b"h1" * 99),
     ),
     "attributes": b"<g %s/>" % b" ".join(b'a%d=""' % n for n in range(300_001)),
     "many pictures": b"".join(
@@ -190,6 +220,13 @@ SLOW = {
     "rules": b"<style>" + b"@a " * 900_000 + b"</style>",
     "rules in a rule": b"<style>@a{" + b"@a " * 900_000 + b"</style>",
     "a long rule": b"<style>@" + b"a" * 3_900_000 + b"</style>",
+    "encodings": b"<?xml " + b' encoding="a"' * 300_000 + b"?>",
+    "letters brought along": b"<style>" + b"url(data:" * 400_000 + b"</style>",
+    "attributes left out": b"<g %s/>" % b" ".join(b'on%d=""' % n for n in range(99_999))
+    + b'<g style="x"/>' * 6_000,
+    "a long value": b'<style>*{font-family:"%s"}</style>' % (b"x" * 290_000) + b"<g/>" * 50_000,
+    "short values": b"<style>*{%s}</style>" % b"".join(b"%s:%s;" % (key, b"x" * 1_999) for key in SAID)
+    + b"<g/>" * 50_000,
     "a nest of rules": b"<style>" + b"@media screen{" * 20_000 + b"</style>",
     "a nest of blocks": b"<style>" + b"{" * 900_000 + b"</style>",
     "a nest of functions": b'<path style="fill:' + b"calc(" * 200_000 + b'"/>',
@@ -259,6 +296,13 @@ def test_a_prefix_and_a_long_head_are_no_hindrance():
     assert b"<path />" in taken(b"<!-- " + b"by me " * 999 + b"-->" + prefixed).data
 
 
+def test_names_of_entities_are_counted_as_they_are_written():
+    told = '<?xml version="1.0" encoding="iso-8859-1"?><!DOCTYPE svg [<!ENTITY é "x">]>'
+    with pytest.raises(PeopleError) as refused:
+        taken((told + drawing("<text>&é;</text>".encode()).decode()).encode("iso-8859-1"))
+    assert refused.value.key == "file-svg"
+
+
 @pytest.mark.parametrize("data", ["é", "AAAA", base64.b64encode(png_of(9, 9, 9)[:45]).decode()])
 def test_a_broken_picture_within_is_left_out(data):
     body, told = kept(f'<image href="data:image/png;base64,{data}"/><path/>')
@@ -273,3 +317,26 @@ def test_a_long_line_with_an_arrow_is_no_great_work():
     dashed = b'<path stroke-dasharray="4 2" d="%s"/>' % line
     for one in (marked, none, dashed):
         assert "−" not in taken(drawing(one)).told
+
+
+ILLEGAL = {
+    "a name": '<rect style="fill:\\1 "/>',
+    "words": "<style>rect{font-family:'\\b'}</style><rect/>",
+    "an address": "<rect fill=\"url('#a\\8 ')\"/>",
+    "a reference": '<use href="#%01"/>',
+    "half a character": '<rect style="fill:\\d800 "/>',
+    "no character": '<rect style="fill:\\fffe "/>',
+    "what is told": '<rect style="\\d800 x:url(http://x);\\1 y:url(http://x)"/>',
+}
+
+
+@pytest.mark.parametrize("case", ILLEGAL)
+def test_what_no_xml_may_hold_is_not_written(case):
+    one = taken(drawing(ILLEGAL[case].encode()))
+    ElementTree.fromstring(one.data)
+    assert one.told.encode().decode().isprintable()
+
+
+def test_a_clip_may_lie_in_what_it_clips():
+    clip = '<g clip-path="url(#c)"><clipPath id="c"><rect /></clipPath></g><g clip-path="url(#c)" />'
+    assert kept(clip)[0] == clip

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 from xml.etree.ElementTree import Element
 
 from hall_app.house.drafts.drawing.styles import REFERENCE
@@ -33,6 +33,10 @@ _PAINTS, _MARKERS = (
 )
 _SIDES = "x y x1 y1 x2 y2 cx cy r rx ry width height".split()
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?", re.IGNORECASE)
+_SIDE = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(%|[a-z]*)", re.IGNORECASE)
+_UNITS = {"": 1.0, "px": 1.0, "pt": 1.4, "pc": 16.0, "mm": 3.8, "cm": 38.0, "in": 96.0}
+_PAIRS = {"q": 2, "s": 2, "c": 3}  # of a segment's numbers
+_PLAIN = {"mix-blend-mode": "normal", "isolation": "auto", "mask": "none"}
 _COMMAND = re.compile(r"([a-z])([^a-df-z]*)", re.IGNORECASE)
 
 Told = Mapping[Element, list[tuple[str, str]]]  # element -> all that is said of it, property and value
@@ -50,6 +54,9 @@ class _Drawn:
     def __add__(self, other: _Drawn) -> _Drawn:
         sums = (self.elements + other.elements, self.corners + other.corners, self.cost + other.cost)
         return _Drawn(*(min(one, MOST_DRAWN + 1) for one in sums))
+
+
+_ONE = _Drawn(1, 1, 1)
 
 
 def draws_too_much(root: Element, told: Told) -> bool:
@@ -72,8 +79,15 @@ class _Counting:
             self._by_id.setdefault(one.get("id", ""), one)  # of two of one name browsers take the first
         self._above = {child: one for one in root.iter() for child in one}
         self._dash = min(filter(None, map(self._dash_of, root.iter())), default=0.0)
-        self._known: dict[Element, _Drawn] = {}
+        self._frame = max(map(_largest, root.iter()), default=0.0) if self._dash else 0.0
         self._within: set[Element] = set()
+        self._known: dict[Element, _Drawn] = {}
+        self._elsewhere: dict[Element, _Drawn | None] = {}
+        # The most that a paint draws which markers take over from the line they stand at.
+        self._taken_over = 0
+        if any("context-" in value for said in told.values() for _, value in said):
+            paints = (said for one in told.values() for said in one if said[0] in _PAINTS)
+            self._taken_over = max((self._paint(*said, _ONE) for said in paints), default=0)
 
     def of(self, element: Element) -> _Drawn:
         if (known := self._known.get(element)) is not None:
@@ -88,16 +102,18 @@ class _Counting:
         for one in self._targets("href", element.get("href", "")):
             drawn += self._called(one)
         drawn += _Drawn(cost=sum(self._paint(key, value, drawn) for key, value in said))
-        if len(element) and any(map(_is_layer, said)):
-            drawn += _Drawn(cost=_LAYER)
+        drawn += _Drawn(cost=_LAYER * sum(self._is_layer(element, *one) for one in said))
         self._within.discard(element)
         self._known[element] = drawn
         return drawn
 
     def _alone(self, element: Element) -> _Drawn:
-        line = element.get("d", "") or element.get("points", "")
+        line = element.get("d", "") or element.get("points", "")  # a browser draws but the one its kind has
         letters = len((element.text or "").strip()) + sum(len((one.tail or "").strip()) for one in element)
-        dashes = int(_length(element) / self._dash / _DASHES) if self._dash else 0
+        dashes = 0
+        if self._dash:
+            count = _length(element, self._frame) / self._dash / _DASHES
+            dashes = int(count) if count < MOST_DRAWN else MOST_DRAWN + 1  # what is no number, too
         own = 1 + len(line) // _LINE + letters // _LETTERS + dashes
         return _Drawn(own, len(_NUMBER.findall(line)) + 4 * (element.tag == "line"), own)
 
@@ -109,20 +125,37 @@ class _Counting:
         if key in _PAINTS:  # handed down to all that is below
             return cost * below.elements
         if key in _MARKERS:
-            return cost * (below.corners if key in ("marker", "marker-mid") else 2 * below.elements)
+            places = below.corners if key in ("marker", "marker-mid") else 2 * below.elements
+            return cost * places * (1 + self._taken_over)
         return cost
 
     def _called(self, target: Element) -> _Drawn:
         """What is drawn from elsewhere is painted by what it lies in, too."""
+        if target in self._elsewhere:
+            if (known := self._elsewhere[target]) is None:
+                raise _InACircle
+            return known
+        self._elsewhere[target] = None
         drawn = self.of(target)
-        if target.tag in _GRADIENTS:
-            return drawn
-        above = self._above.get(target)
+        above = self._above.get(target) if target.tag not in _GRADIENTS else None
         while above is not None:
             if above not in self._within:
-                drawn += _Drawn(cost=sum(self._paint(*said, drawn) for said in self._told.get(above, [])))
+                handed = [said for said in self._told.get(above, []) if said[0] in _PAINTS | _MARKERS]
+                drawn += _Drawn(cost=sum(self._paint(*said, drawn) for said in handed))
             above = self._above.get(above)
+        self._elsewhere[target] = drawn
         return drawn
+
+    def _is_layer(self, element: Element, key: str, value: str) -> bool:
+        """Whether the element is drawn by itself before it is laid over what is below."""
+        if key == "opacity":
+            return value not in ("1", "1.0", "100%") and (len(element) > 0 or element.tag == "use")
+        if (
+            key == "clip-path"
+        ):  # a shape is cut by another as it is drawn, but for letters and what is cut itself
+            inside = [one for target in self._targets(key, value) for one in target.iter()]
+            return any(one.tag in ("text", "use") or _says(self._told, one, key) for one in inside)
+        return key in _PLAIN and value != _PLAIN[key]
 
     def _targets(self, key: str, value: str) -> Iterator[Element]:
         names = [value[1:]] if key == "href" and value.startswith("#") else REFERENCE.findall(value)
@@ -132,46 +165,68 @@ class _Counting:
 
     def _dash_of(self, element: Element) -> float:
         """The length of a dash with its gap, the shortest that is said of the element; 0: none is."""
-        said = (value for key, value in self._told.get(element, []) if key == "stroke-dasharray")
-        sums = (sum(map(float, _NUMBER.findall(value))) for value in said)
-        return min((one for one in sums if one > 0.0), default=0.0)
+        found = [_numbers(value) for value in _says(self._told, element, "stroke-dasharray")]
+        return min((2.0 * sum(one) / len(one) for one in found if sum(one) > 0.0), default=0.0)
 
 
-def _is_layer(said: tuple[str, str]) -> bool:
-    key, value = said
-    plain = {"mix-blend-mode": "normal", "isolation": "auto", "mask": "none"}
-    return key in plain and value != plain[key] or (key == "opacity" and value not in ("1", "1.0", "100%"))
+def _says(told: Told, element: Element, key: str) -> list[str]:
+    return [value for name, value in told.get(element, []) if name == key]
 
 
-def _length(element: Element) -> float:
-    """How long the lines of a shape are at most, as its numbers say."""
+def _numbers(text: str) -> list[float]:
+    return list(map(float, _NUMBER.findall(text)))
+
+
+def _largest(element: Element) -> float:
+    """The largest number of a frame, of which shares may be asked."""
+    return max(
+        _numbers(" ".join(element.get(side, "") for side in ("viewBox", "width", "height"))), default=0.0
+    )
+
+
+def _length(element: Element, frame: float) -> float:
+    """How long the lines of a shape are at most. frame: what a share is of."""
     if element.tag in ("polyline", "polygon"):
-        return _steps(list(map(float, _NUMBER.findall(element.get("points", "")))), closed=True)
+        return _path_length(f"M{element.get('points', '')}Z")
     if element.tag == "path":
         return _path_length(element.get("d", ""))
-    numbers = (_NUMBER.match(element.get(side, "")) for side in _SIDES)
-    return 4.0 * sum(abs(float(one[0])) for one in numbers if one)
+    sides = filter(None, (_SIDE.match(element.get(side, "").strip()) for side in _SIDES))
+    units = _UNITS | {"%": frame / 100.0}
+    return 4.0 * sum(abs(float(one[1])) * units.get(one[2].lower(), 1e6) for one in sides)
 
 
 def _path_length(path: str) -> float:
-    """By the corners of what controls it; an arc is no longer than its ellipse."""
-    total, absolute = 0.0, list[float]()
+    """By the corners of what controls it; infinite where they go by what went before, or are run together."""
+    total = x = y = first_x = first_y = 0.0
     for command, rest in _COMMAND.findall(path):
-        numbers = list(map(float, _NUMBER.findall(rest)))
-        if command in "aA":
-            total += 7.0 * sum(map(abs, numbers[0::7] + numbers[1::7]))
-            numbers = [one for k, one in enumerate(numbers) if k % 7 > 4]
-        if command in "HhVv":
-            total += 2.0 * sum(map(abs, numbers))
-        elif command.islower():
-            total += 2.0 * sum(map(abs, numbers))
+        kind, relative, numbers = command.lower(), command.islower(), _numbers(rest)
+        if kind == "z":
+            total += hypot(x - first_x, y - first_y)
+            x, y = first_x, first_y
+        elif kind == "h":
+            for one in numbers:
+                total, x = total + abs(one if relative else one - x), x + one if relative else one
+        elif kind == "v":
+            for one in numbers:
+                total, y = total + abs(one if relative else one - y), y + one if relative else one
+        elif kind == "a":
+            if len(numbers) % 7 or any(one not in (0.0, 1.0) for one in numbers[3::7] + numbers[4::7]):
+                return inf
+            for k in range(0, len(numbers), 7):
+                new_x, new_y = numbers[k + 5] + x * relative, numbers[k + 6] + y * relative
+                total += 7.0 * (abs(numbers[k]) + abs(numbers[k + 1])) + 4.0 * hypot(new_x - x, new_y - y)
+                x, y = new_x, new_y
+        elif kind == "t":
+            return inf
         else:
-            absolute += numbers[: len(numbers) // 2 * 2]
-    return total + 2.0 * _steps(absolute, closed=True)
-
-
-def _steps(numbers: list[float], *, closed: bool) -> float:
-    points = list(zip(numbers[0::2], numbers[1::2], strict=False))
-    if closed and points:
-        points.append(points[0])
-    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(points, points[1:], strict=False))
+            step = 2 * _PAIRS.get(kind, 1)
+            for k in range(0, len(numbers) - step + 1, step):
+                last_x, last_y = x, y
+                for pair in range(k, k + step, 2):
+                    new_x, new_y = numbers[pair] + x * relative, numbers[pair + 1] + y * relative
+                    total += 2.0 * hypot(new_x - last_x, new_y - last_y)
+                    last_x, last_y = new_x, new_y
+                x, y = last_x, last_y
+                if kind == "m" and k == 0:
+                    first_x, first_y = x, y
+    return total

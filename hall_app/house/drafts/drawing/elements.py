@@ -24,9 +24,12 @@ from hall_app.house.drafts.drawing.styles import (
     TooMuch,
     clean,
     declared,
+    note,
     plain,
     target,
     told_by_sheets,
+    weighty,
+    written,
 )
 from hall_app.house.people import PeopleError
 
@@ -35,7 +38,7 @@ __all__ = ["redrawn"]
 _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
 _SHAPES = "path rect circle ellipse line polyline polygon text image use"
 _DRAWN = frozenset(
-    f"svg g defs symbol switch title desc {_SHAPES} tspan textPath linearGradient radialGradient stop pattern "
+    f"svg g a defs symbol switch title desc {_SHAPES} tspan textPath linearGradient radialGradient stop pattern "
     "clipPath mask marker".split()
 )
 _TEXTS = frozenset(("text", "tspan", "textPath"))
@@ -55,6 +58,7 @@ _XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
 
 _DECLARED = re.compile(rb"^\s*<\?xml[^>]*?encoding\s*=\s*[\"']([\w-]+)[\"'][^>]*\?>")
 _DECLARATION = re.compile(r"^\s*<\?xml[^>]*\?>")
+_HEAD = 200  # bytes in which the encoding is declared
 # What expat does not read by itself, and what it is read as.
 _ENCODINGS = {
     "gb2312": "gb18030",
@@ -64,6 +68,7 @@ _ENCODINGS = {
     "shift_jis": "cp932",
 }
 
+_WHOLE = "stroke-dasharray:none!important"
 _LONGEST_SPACE = 200  # characters of a namespace's name, which every name of the tree repeats
 _MOST_WRITTEN = 60_000  # elements of the file
 _MOST_ATTRIBUTES = 300_000
@@ -84,9 +89,12 @@ def redrawn(
     try:
         root = cleaning.kept(_tree(name, data), "svg")
         told, sheet = told_by_sheets(cleaning.sheets, root, cleaning.left)
+        _without_links(root)
         said = {
-            one: [*one.attrib.items(), *told.get(one, ()), *cleaning.said.get(one, ())] for one in root.iter()
+            one: [*weighty(one.attrib.items()), *told.get(one, ()), *cleaning.said.get(one, ())]
+            for one in root.iter()
         }
+        _without_dashed_letters(root, said)
         if draws_too_much(root, said):
             raise TooMuch
     except (TooMuch, RecursionError):  # what nests in styles is followed as it nests
@@ -119,7 +127,7 @@ def _tree(name: str, data: bytes) -> ElementTree.Element:
 
 def _as_utf8(name: str, data: bytes) -> bytes:
     """As it is where expat reads it. Raises PeopleError, or ValueError of the decoder."""
-    told = _DECLARED.match(data)
+    told = _DECLARED.match(data[:_HEAD])
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         text = data.decode("utf-16")
     elif told is not None and (known := _ENCODINGS.get(told[1].decode().lower())):
@@ -145,6 +153,7 @@ def _look_through(name: str, data: bytes) -> None:
         unfolded = data.count(f"&{called};".encode()) * len(value or "")
         if (
             parameter
+            or not called.isascii()
             or value is None
             or set("&<%") & set(value)
             or len(value) > _LONGEST_ENTITY
@@ -193,8 +202,6 @@ class _Cleaning:
         made.text = source.text
         for child in source:
             local = _local(child.tag)
-            if local == "a":  # a link leads nowhere from a picture; what it holds is drawn
-                local = "tspan" if tag in _TEXTS else "g"
             if local in _DRAWN and (local != "image" or self._embedded(child)):
                 made.append(self.kept(child, local))
                 made[-1].tail = child.tail
@@ -202,7 +209,7 @@ class _Cleaning:
             if local == "style" and child.get("type", "").strip().lower() in ("", "text/css"):
                 self.sheets.append((child.get("media", ""), "".join(child.itertext())))
             elif local not in ("", "metadata"):  # what an editor notes for itself is no loss
-                self.left[local[:20]] += 1
+                note(self.left, local)
             if child.tail and len(made):
                 made[-1].tail = (made[-1].tail or "") + child.tail
             elif child.tail:
@@ -216,19 +223,19 @@ class _Cleaning:
         elif local == "href" and space in ("", "{" + _XLINK):
             kept = value.strip() if made.tag == "image" else (named := target(value)) and f"#{named}"
             if kept is None:
-                self.left["href"] += 1
+                note(self.left, "href")
             elif not space or "href" not in made.attrib:
                 made.set("href", kept)
         elif space or not _NAME.fullmatch(local) or local.startswith("data-"):
             return
         elif local.lower().startswith(_UNUSED):
-            self.left[local[:20]] += 1
+            note(self.left, local)
         elif local in ("id", "class"):
             made.set(local, value)
         elif local == "style":
             self._style(made, value)
         elif (kept := _value(local, value)) is None:
-            self.left[local[:20]] += 1
+            note(self.left, local)
         else:
             made.set(local, kept)
 
@@ -240,14 +247,16 @@ class _Cleaning:
                 raise PeopleError("file-svg-drawn", name=self.name)
             left = Counter[str]()
             said, stressed = declared(value, left)
-            lines = [f"{key}:{one}" for key, one in said.items()]
-            lines += [f"{key}:{one}!important" for key, one in stressed.items()]
-            self.styles[value] = (";".join(lines), [*said.items(), *stressed.items()], left)
-        written, told, left = self.styles[value]
-        self.left += left
-        if told:
-            made.set("style", written)
-            self.said[made] = told
+            self.styles[value] = (
+                written(said, stressed),
+                weighty([*said.items(), *stressed.items()]),
+                left,
+            )
+        style, said, left = self.styles[value]
+        self.left.update(left)
+        if style:
+            made.set("style", style)
+            self.said[made] = said
 
     def _embedded(self, element: ElementTree.Element) -> bool:
         """Whether the picture lies in the file, and can be drawn; it is drawn anew then."""
@@ -288,6 +297,40 @@ def _value(name: str, value: str) -> str | None:
     if not read:
         return value if plain(value) else None
     return clean(name, tinycss2.parse_component_value_list(value, skip_comments=True))
+
+
+def _without_links(root: ElementTree.Element) -> None:
+    """A link leads nowhere from a picture; what it holds is drawn."""
+    for one in root.iter():
+        for child in one:
+            if child.tag == "a":
+                child.tag = "tspan" if one.tag in _TEXTS else "g"
+                for name in ("target", "download", "type", "href"):
+                    child.attrib.pop(name, None)
+
+
+def _without_dashed_letters(
+    root: ElementTree.Element, said: dict[ElementTree.Element, list[tuple[str, str]]]
+) -> None:
+    """Nobody knows how long the outlines of letters are: they have none in dashes, where any reach them."""
+
+    def visit(element: ElementTree.Element, dashed: bool) -> None:
+        dashed = dashed or any(key == "stroke-dasharray" and value != "none" for key, value in said[element])
+        if element.tag == "use" and dashed:
+            reached.append(element)
+        if element.tag in _TEXTS:
+            texts.append((element, dashed))
+        for child in element:
+            visit(child, dashed)
+
+    reached: list[ElementTree.Element] = []
+    texts: list[tuple[ElementTree.Element, bool]] = []
+    visit(root, False)
+    for element, dashed in texts:
+        if dashed or reached:
+            before = element.get("style", "")
+            if not before.endswith(_WHOLE):
+                element.set("style", f"{before};{_WHOLE}".lstrip(";"))
 
 
 def _local(tag: object) -> str:

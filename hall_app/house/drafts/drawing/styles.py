@@ -10,27 +10,42 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import unquote
 from xml.etree.ElementTree import Element
 
 import tinycss2
-from tinycss2.ast import FunctionBlock, Node, URLToken
+from tinycss2.ast import FunctionBlock, URLToken
 
-__all__ = ["PROPERTIES", "REFERENCE", "TooMuch", "clean", "declared", "plain", "target", "told_by_sheets"]
+__all__ = [
+    "PROPERTIES",
+    "REFERENCE",
+    "TooMuch",
+    "clean",
+    "declared",
+    "note",
+    "plain",
+    "target",
+    "told_by_sheets",
+    "weighty",
+    "written",
+]
 
+Token = Any  # a node of tinycss2: its `type` tells what it has
 REFERENCE = re.compile(r"url\(#([^)]+)\)")  # as they are written here
 
 PROPERTIES = frozenset(
-    "alignment-baseline baseline-shift clip-path clip-rule color color-interpolation color-rendering cx cy direction "
+    "alignment-baseline background background-color baseline-shift clip-path clip-rule color color-interpolation "
+    "color-rendering direction "
     "display dominant-baseline fill fill-opacity fill-rule font font-family font-feature-settings font-kerning "
     "font-size font-size-adjust font-stretch font-style font-variant font-variant-caps font-variant-east-asian "
-    "font-variant-ligatures font-variant-numeric font-variation-settings font-weight height image-rendering isolation "
+    "font-variant-ligatures font-variant-numeric font-variation-settings font-weight image-rendering isolation "
     "letter-spacing line-height marker marker-end marker-mid marker-start mask mask-type mix-blend-mode opacity "
-    "overflow paint-order r rx ry shape-rendering stop-color stop-opacity stroke stroke-dasharray stroke-dashoffset "
+    "overflow paint-order shape-rendering stop-color stop-opacity stroke stroke-dasharray stroke-dashoffset "
     "stroke-linecap stroke-linejoin stroke-miterlimit stroke-opacity stroke-width text-align text-anchor "
     "text-decoration text-decoration-color text-decoration-line text-decoration-style text-decoration-thickness "
     "text-indent text-orientation text-rendering text-transform transform transform-box transform-origin "
-    "unicode-bidi vector-effect visibility white-space width word-spacing writing-mode x y".split()
+    "unicode-bidi vector-effect visibility white-space word-spacing writing-mode".split()
 )
 _FUNCTIONS = frozenset(
     "calc circle clamp color color-mix ellipse hsl hsla hwb inset lab lch light-dark matrix max min oklab oklch "
@@ -42,7 +57,13 @@ _SCREENS = frozenset(("", "all", "screen", "only screen"))
 # Properties that no child takes from its parent: asked for so, each child would draw its parent's target once more.
 _ALONE = frozenset(("clip-path", "mask"))
 _LENGTHS = re.compile(r"([\d.]+(?:e[+-]?\d+)?)(px|pt|pc|mm|cm|in)?", re.IGNORECASE)
-_DATA = re.compile(r"url\(\s*[\"']?data:[^)]*\)", re.IGNORECASE)  # letters that programs bring with them
+# Letters that programs bring with them; what is never closed goes to the end, so nothing is looked at twice.
+_DATA = re.compile(r"url\(\s*+[\"']?+data:[^)\"']*+", re.IGNORECASE)
+_LEGAL = re.compile(r"[\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]*")  # what XML may hold
+_KEY = re.compile(r"[A-Za-z][A-Za-z-]{0,30}")
+_MOST_KEYS = 200  # that are told of
+_LONGEST_VALUE = 2_000
+_WEIGHTY = frozenset("stroke-dasharray opacity mix-blend-mode isolation".split())
 _MOST_READ = 300_000  # characters of all sheets
 _MOST_WEIGHED = 500_000  # parts of selectors, each for each element
 _MOST_TOLD = 2_000_000  # characters of all classes
@@ -82,7 +103,13 @@ class Selected:
 def target(reference: str) -> str | None:
     """The name that "#name" refers to; None where it leads out of the file, or browsers would read it otherwise."""
     name = unquote(reference.strip())
-    return name[1:] if _NAMED.fullmatch(name) else None
+    return name[1:] if _NAMED.fullmatch(name) and _LEGAL.fullmatch(name) else None
+
+
+def note(left: Counter[str], key: str) -> None:
+    """One more of what was left out, by a name that a page can show."""
+    key = key[:20] if _KEY.fullmatch(key) else "…"
+    left[key if key in left or len(left) < _MOST_KEYS else "…"] += 1
 
 
 def plain(value: str) -> bool:
@@ -92,30 +119,34 @@ def plain(value: str) -> bool:
     return "(" not in value or all(name.lower() in _FUNCTIONS for name in _CALLED.findall(value))
 
 
-def clean(name: str, tokens: Iterable[Node]) -> str | None:
+def clean(name: str, tokens: Iterable[Token]) -> str | None:
     """A property's value; None: it asks for something beyond the file, or does what no drawing needs."""
     kept = [_clean(token) for token in tokens]
     if None in kept:
         return None
     value = tinycss2.serialize([token for token in kept if token is not None]).strip()
+    if len(value) > _LONGEST_VALUE or not _LEGAL.fullmatch(value):
+        return None
+    if name.startswith("background") and "url(" in value:  # nothing that draws; a plain colour is seen
+        return None
     if name in _ALONE and value.lower() in ("inherit", "unset", "revert", "revert-layer"):
         return None
     return None if name == "stroke-dasharray" and not _dashes_known(value) else value
 
 
-def declared(style: str | Sequence[Node], left: Counter[str]) -> tuple[dict[str, str], dict[str, str]]:
+def declared(style: str | Sequence[Token], left: Counter[str]) -> tuple[dict[str, str], dict[str, str]]:
     """What a style attribute or a rule's block says, (as it is, as important). left: counts what was left out."""
     said: tuple[dict[str, str], dict[str, str]] = ({}, {})
     for one in tinycss2.parse_blocks_contents(style, skip_comments=True, skip_whitespace=True):
         if one.type != "declaration":
-            left["style"] += 1
+            note(left, "style")
         elif one.lower_name not in PROPERTIES:
             if one.lower_name.endswith("filter") or any(map(_asks, one.value)):
-                left[one.lower_name[:20]] += 1
+                note(left, one.lower_name)
         elif (value := clean(one.lower_name, one.value)) is None:
-            left[one.lower_name[:20]] += 1
+            note(left, one.lower_name)
         else:
-            said[one.important][one.lower_name] = value
+            _say(said[one.important], one.lower_name, value)
     return said
 
 
@@ -125,7 +156,7 @@ def told_by_sheets(
     """What style sheets, (media, text), say of each element, and the sheet that says it by classes, which the elements
     now have. Raises TooMuch."""
     rules: list[Selected] = []
-    read = 0
+    read = number = 0
     for media, text in sheets:
         if _shown(media):
             text = _DATA.sub("url()", text)
@@ -133,31 +164,53 @@ def told_by_sheets(
             if read > _MOST_READ:
                 raise TooMuch
             for rule in _rules(tinycss2.parse_stylesheet(text, True, True), left):
-                rules += _selected(rule, len(rules), left)
+                rules += _selected(rule, number := number + 1, left)
     told: dict[Element, list[tuple[str, str]]] = {}
     classes: dict[str, str] = {}  # block -> class
-    found = _Matches(rules)
+    merged: dict[tuple[int, ...], tuple[str, list[tuple[str, str]]]] = {}  # rules -> class and what they say
     size = 0
-    for element, matched in found.walk(root):
+    for element, matched in _Matches(rules).walk(root):
         element.attrib.pop("class", None)
         if not matched:
             continue
-        merged, stressed = {}, {}
-        for rule in sorted(matched, key=lambda one: one.weight):
-            merged |= rule.said
-            stressed |= rule.stressed
-        lines = [f"{key}:{value}" for key, value in merged.items()]
-        lines += [f"{key}:{value}!important" for key, value in stressed.items()]
-        block = ";".join(lines)
-        if not block:
-            continue
-        if block not in classes:
-            size += len(block)
+        key = tuple(sorted(map(id, matched)))
+        if key not in merged:
+            block, said = _merged(matched)
+            size += 0 if block in classes else len(block)
             if size > _MOST_TOLD:
                 raise TooMuch
-        element.set("class", classes.setdefault(block, f"c{len(classes) + 1}"))
-        told[element] = [*merged.items(), *stressed.items()]
+            merged[key] = (block and classes.setdefault(block, f"c{len(classes) + 1}"), weighty(said))
+        name, said = merged[key]
+        if name:
+            element.set("class", name)
+            told[element] = said
     return told, "".join(f".{name}{{{block}}}\n" for block, name in classes.items())
+
+
+def written(said: Mapping[str, str], stressed: Mapping[str, str]) -> str:
+    """As a block or a style attribute has it."""
+    lines = [f"{key}:{value}" for key, value in said.items()]
+    return ";".join([*lines, *(f"{key}:{value}!important" for key, value in stressed.items())])
+
+
+def weighty(said: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """What of it decides how much is drawn."""
+    return [(key, value) for key, value in said if key in _WEIGHTY or "url(" in value or "context-" in value]
+
+
+def _merged(matched: Iterable[Selected]) -> tuple[str, list[tuple[str, str]]]:
+    said, stressed = dict[str, str](), dict[str, str]()
+    for rule in sorted(matched, key=lambda one: one.weight):
+        for whole, more in ((said, rule.said), (stressed, rule.stressed)):
+            for key, value in more.items():
+                _say(whole, key, value)
+    return written(said, stressed), [*said.items(), *stressed.items()]
+
+
+def _say(said: dict[str, str], key: str, value: str) -> None:
+    """After all else: a later `font` speaks of what an earlier `font-size` said, and the other way round."""
+    said.pop(key, None)
+    said[key] = value
 
 
 class _Matches:
@@ -217,7 +270,7 @@ def _shown(media: str) -> bool:
     return any(" ".join(one.lower().split()) in _SCREENS for one in media.split(","))
 
 
-def _rules(rules: Iterable[Node], left: Counter[str]) -> Iterator[Node]:
+def _rules(rules: Iterable[Token], left: Counter[str]) -> Iterator[Token]:
     """Those of @media that mean a screen included."""
     for rule in rules:
         if rule.type == "qualified-rule":
@@ -230,38 +283,37 @@ def _rules(rules: Iterable[Node], left: Counter[str]) -> Iterator[Node]:
         ):
             yield from _rules(tinycss2.parse_rule_list(rule.content, True, True), left)
         else:
-            left["@" if rule.type == "at-rule" else "style"] += 1
+            note(left, "at-rule" if rule.type == "at-rule" else "style")
 
 
-def _selected(rule: Node, before: int, left: Counter[str]) -> Iterator[Selected]:
+def _selected(rule: Token, number: int, left: Counter[str]) -> Iterator[Selected]:
     said, stressed = declared(rule.content, left)
-    selectors: list[list[Node]] = [[]]
+    selectors: list[list[Token]] = [[]]
     for token in rule.prelude:
         if token == ",":
             selectors.append([])
         elif token.type != "comment":
             selectors[-1].append(token)
-    for number, selector in enumerate(selectors):
+    for selector in selectors:
         parts = _parts(selector)
         if parts is None:
-            left["style"] += 1
+            note(left, "style")
             continue
         keys = sum(bool(part.key) for part in parts)
-        classes = sum(len(part.classes) for part in parts)
-        yield Selected(
-            parts, (keys, classes, sum(bool(part.kind) for part in parts), before + number), said, stressed
-        )
+        classes = sum(token == "." for token in selector)
+        kinds = sum(bool(part.kind) for part in parts)
+        yield Selected(parts, (keys, classes, kinds, number), said, stressed)
 
 
-def _parts(selector: Sequence[Node]) -> tuple[Compound, ...] | None:
+def _parts(selector: Sequence[Token]) -> tuple[Compound, ...] | None:
     """None: it selects by more than elements, classes and names, and what they lie in."""
     found: list[Compound] = []
     kind, key, classes, child, any_kind = "", "", set[str](), False, False
-    tokens = [*selector, None]
+    tokens: list[Token] = [*selector, None]
     k = 0
     while k < len(tokens):
         token = tokens[k]
-        ends = token is None or token.type == "whitespace" or token == ">"
+        ends = token is None or token == ">" or token.type == "whitespace"
         if ends and (kind or key or classes or any_kind):
             found.append(Compound(kind, key, frozenset(classes), child))
             kind, key, classes, child, any_kind = "", "", set[str](), False, False
@@ -286,24 +338,24 @@ def _parts(selector: Sequence[Node]) -> tuple[Compound, ...] | None:
     return None if child or not found else tuple(found)
 
 
-def _clean(token: Node) -> Node | None:
+def _clean(token: Token) -> Token | None:
     if token.type == "url":
         name = target(token.value)
     elif token.type == "function" and token.lower_name == "url":
         given = [one for one in token.arguments if one.type not in ("whitespace", "comment")]
         name = target(given[0].value) if len(given) == 1 and given[0].type == "string" else None
     elif token.type == "function":
-        kept = [_clean(one) for one in token.arguments]
+        kept: list[Token] = [_clean(one) for one in token.arguments]
         if token.lower_name not in _FUNCTIONS or None in kept:
             return None
         return FunctionBlock(token.source_line, token.source_column, token.name, kept)
     else:
         allowed = "comment dimension hash ident literal number percentage string unicode-range whitespace"
         return token if token.type in allowed.split() else None
-    return name and URLToken(token.source_line, token.source_column, name, f"url(#{name})")
+    return None if name is None else URLToken(token.source_line, token.source_column, name, f"url(#{name})")
 
 
-def _asks(token: Node) -> bool:
+def _asks(token: Token) -> bool:
     return token.type == "url" or (token.type == "function" and token.lower_name not in _FUNCTIONS)
 
 
