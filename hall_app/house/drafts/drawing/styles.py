@@ -313,8 +313,7 @@ def _parts(selector: Sequence[Token]) -> tuple[Compound, ...] | None:
     k = 0
     while k < len(tokens):
         token = tokens[k]
-        ends = token is None or token == ">" or token.type == "whitespace"
-        if ends and (kind or key or classes or any_kind):
+        if _ends(token) and (kind or key or classes or any_kind):
             found.append(Compound(kind, key, frozenset(classes), child))
             kind, key, classes, child, any_kind = "", "", set[str](), False, False
         if token is None or token.type == "whitespace":
@@ -336,6 +335,10 @@ def _parts(selector: Sequence[Token]) -> tuple[Compound, ...] | None:
             return None
         k += 1
     return None if child or not found else tuple(found)
+
+
+def _ends(token: Token | None) -> bool:
+    return token is None or token.type == "whitespace" or token == ">"
 
 
 def _clean(token: Token) -> Token | None:
