@@ -32,6 +32,7 @@ class Place(Table):
     y: float | None = Field(
         None, ge=0, le=3, description="height of its foot [m]; without it the top of place.on, else the floor"
     )
+    lamp: float = Field(1.0, ge=0.2, le=4, description="how bright its lamp is, of what others have")
 
 
 class Models(Table):

@@ -126,6 +126,7 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "x": file.place.x,
         "z": file.place.z,
         "facing": file.place.facing,
+        "lamp": file.place.lamp,
         "thumbnail": thumbnail(exhibit, baked),
         "motion": _motion(exhibit, baked),
         "close_motion": _url(exhibit, CLOSE_MOTION, baked) if file.outfit is not None else None,

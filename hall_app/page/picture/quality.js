@@ -2,6 +2,7 @@
 
 import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/viser_adapter.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
+import { aimLamp } from "./lamp.js";
 import { layLight, plainTones, reflect, sharpen } from "./light.js";
 import { shadeBySight } from "./sides.js";
 import { gleam } from "./silk.js";
@@ -33,8 +34,9 @@ function softwareDraws() {
   return Boolean(names) && SOFTWARE.test(String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)));
 }
 
-/** createQuality(onChange) -> {choice, level, choose, frame, dress}; onChange() when choice or level is another. */
-export function createQuality(onChange = () => {}) {
+/** createQuality(scene, onChange) -> {choice, level, choose, frame}; onChange() when choice or level is another. */
+export function createQuality({ exhibits }, onChange = () => {}) {
+  const lit = new Map(exhibits.map((exhibit) => [`/exhibits/${exhibit.id}`, exhibit]));
   let choice = CHOICES.includes(recall(CHOSEN)) ? recall(CHOSEN) : "auto";
   const found = LEVELS.includes(recall(FOUND)) ? recall(FOUND) : null;
   const first = found ?? (softwareDraws() ? "low" : "medium");
@@ -82,6 +84,7 @@ export function createQuality(onChange = () => {}) {
         sharpen(meshes, anisotropy, blend);
         shadeBySight(meshes);
         gleam(meshes, blend);
+        if (lit.has(name)) aimLamp(meshes, lit.get(name));
       }
       drawAt(resolution(level(), window.devicePixelRatio));
     },

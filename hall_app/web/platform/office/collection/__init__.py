@@ -58,7 +58,9 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
     )
     titles = {"id": "name of its folder", "title.zh": "Chinese", "title.en": "English"}
     text = {"file": " or ".join(TEXT_FILES), "text": "the whole file", "tag": _TAG}
-    place = {f"place.{name}": f"place.{name} of exhibit.toml" for name in ("x", "z", "facing", "on", "y")}
+    place = {
+        f"place.{name}": f"place.{name} of exhibit.toml" for name in ("x", "z", "facing", "on", "y", "lamp")
+    }
     upload = {"use": " or ".join(USES), "alt.zh": "what it shows", "alt.en": "what it shows"}
     seen = {"seen": "the draft's mark as it was read; 409 where it is another by now"}
     deeds = (

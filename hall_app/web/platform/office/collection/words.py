@@ -20,6 +20,7 @@ WORDS: Mapping[str, tuple[str, str]] = {  # zh, en
     "place.z": ("z：向入口（米）", "z, towards the entrance [m]"),
     "place.facing": ("朝向（度）", "Facing [degrees]"),
     "place.on": ("置于", "Stands on"),
+    "place.lamp": ("射灯亮度（1 为常）", "Lamp, of the usual brightness"),
     "place.y": ("离地高度（米）", "Height of its foot [m]"),
     "body.shape": ("形状", "Shape"),
     "body.shape=round": ("圆形", "round"),
