@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -344,3 +345,19 @@ def test_lookup_of_the_folder(house: Path, tmp_path: Path):
 def test_half_a_folder_is_still_found_so_that_loading_can_say_what_is_missing(house: Path):
     (house / "hall.toml").unlink()
     assert content_folder(here=house.parent) == house.resolve()
+
+
+def test_a_key_asked_for_again_parses_nothing_that_is_as_it_was(house: Path, monkeypatch: pytest.MonkeyPatch):
+    """An open hall asks every second."""
+    dressed(house)
+    content = load(house)
+    (exhibit,) = content.exhibits
+    before = bake_key(content, exhibit)
+    parsed, loads = [], tomllib.loads
+    monkeypatch.setattr(tomllib, "loads", lambda text: parsed.append(text) or loads(text))
+    assert bake_key(content, exhibit) == before
+    assert parsed == []
+    weave = house / "weaves/gauze.toml"
+    weave.write_text(weave.read_text("utf-8") + "\n# another\n", "utf-8")
+    assert bake_key(content, exhibit) != before
+    assert len(parsed) == 1

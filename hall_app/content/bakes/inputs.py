@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
+from functools import lru_cache
 from os.path import normpath
 from pathlib import Path
 from typing import Any
@@ -25,8 +26,19 @@ def outfit_files(folder: Path, outfit: str) -> tuple[tuple[str, str], ...]:
     What is no path where one belongs is passed over: whoever dresses the outfit refuses it. Raises OSError,
     UnicodeDecodeError, tomllib.TOMLDecodeError, ValueError or RecursionError for a file that cannot be read.
     """
-    table = tomllib.loads((folder / outfit).read_bytes().decode("utf-8-sig"))
+    table = _table(folder / outfit)
     return tuple((key, path) for key, path in _named(table) if isinstance(path, str) and path)
+
+
+def _table(path: Path) -> dict[str, Any]:
+    """To be read alone. An open hall asks every second, and parsing would be most of what it does all day."""
+    state = path.stat()
+    return _parsed(path, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=1024)
+def _parsed(path: Path, _mtime: int, _size: int) -> dict[str, Any]:
+    return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
 
 
 def _named(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -79,7 +91,7 @@ def _motifs(folder: Path, path: str) -> list[str]:
     if not path.endswith(".toml"):
         return []
     try:
-        table = tomllib.loads((folder / path).read_bytes().decode("utf-8-sig"))
+        table = _table(folder / path)
     except (OSError, ValueError, RecursionError):
         return []
     draft, parts = table.get("draft"), table.get("part")
