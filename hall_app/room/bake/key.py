@@ -57,7 +57,7 @@ def _hash(inputs: dict[str, Any]) -> str:
 
 def _label(exhibit: Exhibit) -> dict[str, Any]:
     """What of an exhibit shows in the room: its title, and where its label stands."""
-    place = exhibit.file.place.model_dump(mode="json")
+    place = exhibit.file.place.model_dump(mode="json", exclude={"lamp"})  # it lights the exhibit alone
     body = exhibit.file.body.model_dump(mode="json")
     return {"title": exhibit.file.title.as_json(), "place": place, "body": body}
 

@@ -121,10 +121,10 @@ def plain(value: str) -> bool:
 
 def clean(name: str, tokens: Iterable[Token]) -> str | None:
     """A property's value; None: it asks for something beyond the file, or does what no drawing needs."""
-    kept = [_clean(token) for token in tokens]
+    kept: list[Token] = [_clean(token) for token in tokens]
     if None in kept:
         return None
-    value = tinycss2.serialize([token for token in kept if token is not None]).strip()
+    value = tinycss2.serialize(kept).strip()
     if len(value) > _LONGEST_VALUE or not _LEGAL.fullmatch(value):
         return None
     if name.startswith("background") and "url(" in value:  # nothing that draws; a plain colour is seen
