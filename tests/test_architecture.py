@@ -134,6 +134,22 @@ def test_tests_go_through_public_faces(house):
     assert not inner, "\n".join(sorted(inner))
 
 
+def test_a_test_is_collected_without_other_rooms_tests():
+    """What it imports of the tests lies beside it or above all: another room's folder is on no path of its own."""
+    tests = ROOT / "tests"
+    folders = [folder for folder in tests.iterdir() if folder.is_dir() and any(folder.glob("test_*.py"))]
+    helpers = {folder: {path.stem for path in folder.glob("*.py")} for folder in folders}
+    shared = {path.stem for path in tests.glob("*.py")}
+    strange = []
+    for folder in folders:
+        elsewhere = set().union(*helpers.values()) - helpers[folder] - shared
+        for path in folder.glob("*.py"):
+            names = imported(ast.parse(path.read_text("utf-8"))) & elsewhere
+            strange += [f"{path.relative_to(ROOT)}: {name}" for name in names]
+    assert len(folders) >= 4
+    assert not strange
+
+
 @pytest.mark.parametrize("room", ROOMS)
 def test_heavy_packages_are_imported_where_needed(room):
     for path in modules(room):

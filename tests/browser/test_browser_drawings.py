@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hostile_files import drawing
 from PIL import Image
+from svg_drawings import drawing
 
 from hall_app.house.drafts import take_in
 

@@ -13,6 +13,7 @@ import zlib
 import trimesh
 from content_house import png_of
 from PIL import Image
+from svg_drawings import doubled, drawing
 
 __all__ = ["hostile_files"]
 
@@ -24,19 +25,6 @@ def picture(kind: str, size: tuple[int, int] = (8, 8), **more: object) -> bytes:
     data = io.BytesIO()
     Image.new("RGB", size, "#7a4b2e").save(data, kind, **more)
     return data.getvalue()
-
-
-def drawing(inside: bytes, root: bytes = b"svg") -> bytes:
-    told = b' xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
-    return b"<" + root + told + inside + b"<!-- <svg --></" + root + b">"
-
-
-def doubled(times: int) -> bytes:
-    """Few bytes that draw one path 2^times times."""
-    levels = [b'<path id="u0" d="M0 0h9"/>']
-    for n in range(1, times + 1):
-        levels.append(b'<g id="u%d"><use href="#u%d"/><use href="#u%d"/></g>' % (n, n - 1, n - 1))
-    return b"".join(levels)
 
 
 def zipped(inside: bytes) -> bytes:

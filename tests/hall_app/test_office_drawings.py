@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 
 import pytest
 from content_house import png_of
-from hostile_files import doubled, drawing
 from PIL import Image
+from svg_drawings import doubled, drawing
 
 from hall_app.content.models import picture_fault
 from hall_app.house.drafts import Taken, take_in
