@@ -5,7 +5,7 @@ import math
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from bench.browser import PATIENCE, back_in_the_hall, displayed, enter, pose, soon
+from bench.browser import PATIENCE, at_rest, back_in_the_hall, displayed, enter, pose, soon
 from bench.track import place
 from plain_hall import write_plain_hall
 from running_hall import free_port, running_hall
@@ -71,12 +71,12 @@ def stands_before_the_box(page) -> None:
 def test_an_open_exhibit_is_named_and_back_and_forward_lead_out_and_in(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     place(page, 1.0, -3.0, 0.7)
-    before = displayed(page)
+    before = at_rest(page)
     open_by_list(page)
     assert named(page) == ("box", "en")
     page.go_back()
     is_closed(page)
-    assert displayed(page) == pytest.approx(before, abs=1e-6)
+    assert at_rest(page) == pytest.approx(before, abs=1e-6)
     page.go_forward()
     is_open(page)
     page.keyboard.press("Escape")

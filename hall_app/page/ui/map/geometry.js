@@ -69,8 +69,9 @@ export function bayAt(point, bays) {
 const TURNS = 60; // of pushing apart: a dozen crowded dots rest after ten
 
 /**
- * Places [{id, x, z}] moved no farther than it takes for each two to lie `least` [m] apart: what is drawn of them is
- * pressed with a finger. Those that have room stay where they are.
+ * Places [{id, x, z}] moved no farther than it takes for each two to lie `least` [m] apart along x or along z: what is
+ * drawn of them is pressed with a finger, and a corner between two that lie aslant is none. Those that have room stay
+ * where they are.
  */
 export function spreadApart(places, least) {
   const moved = places.map(({ id, x, z }) => ({ id, x, z }));
@@ -80,15 +81,13 @@ export function spreadApart(places, least) {
       for (let j = 0; j < i; j += 1) {
         const [a, b] = [moved[i], moved[j]];
         const [dx, dz] = [a.x - b.x, a.z - b.z];
-        const distance = Math.hypot(dx, dz);
+        const axis = Math.abs(dx) >= Math.abs(dz) ? "x" : "z";
+        const distance = Math.max(Math.abs(dx), Math.abs(dz));
         if (distance >= least - 1e-3) continue;
         crowded = true;
-        const [x, z] = distance > 0 ? [dx / distance, dz / distance] : [1, 0];
-        const push = (least - distance) / 2;
-        a.x += push * x;
-        a.z += push * z;
-        b.x -= push * x;
-        b.z -= push * z;
+        const push = ((least - distance) / 2) * (a[axis] < b[axis] ? -1 : 1);
+        a[axis] += push;
+        b[axis] -= push;
       }
     }
   }
