@@ -1,7 +1,7 @@
 """Who wears a garment: a figure with joints and weights, its poses, and the moving solid that cloth meets."""
 
 from sim_core.body.beneath import HANDS, Beneath, Surface
-from sim_core.body.cover import Cover, covered
+from sim_core.body.cover import Cover, Petticoat, covered
 from sim_core.body.joints import JOINTS, OTHER_SIDE, PARENTS
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
@@ -26,6 +26,7 @@ __all__ = [
     "OTHER_SIDE",
     "PARENTS",
     "POSES",
+    "Petticoat",
     "Pose",
     "SKINS",
     "Skeleton",

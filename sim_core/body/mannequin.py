@@ -57,7 +57,8 @@ class Mannequin:
 
     vertices (V, 3) float64 [m]; faces (F, 3) int32; heads (21, 3) [m], the joints at rest in the order of JOINTS;
     weights (V, 21), rows sum to 1; marks: named heights and points (3,) [m] of the T-pose; skin: how the surface goes
-    with its joints, one of SKINS; pieces: of its cover, no part of a file.
+    with its joints, one of SKINS; pieces: of its cover, and folded: vertices (V, 3) [m] where its petticoat is folded
+    (None: it has none), no part of a file.
     """
 
     name: str
@@ -68,6 +69,7 @@ class Mannequin:
     marks: dict[str, np.ndarray]
     skin: str = "dual"
     pieces: tuple[Piece, ...] = ()
+    folded: np.ndarray | None = None
 
     @property
     def skeleton(self) -> Skeleton:
@@ -77,7 +79,10 @@ class Mannequin:
     def posed(self, pose: Pose = T_POSE) -> np.ndarray:
         """Vertices (V, 3) [m] in a pose; raises SimCoreError where a joint is turned beyond its limit."""
         pose.check()
-        return SKINS[self.skin](self.vertices, self.weights, self.skeleton, pose)
+        x = self.vertices
+        if self.folded is not None and pose.spread != 1.0:
+            x = (1.0 - pose.spread) * self.folded + pose.spread * x
+        return SKINS[self.skin](x, self.weights, self.skeleton, pose)
 
     def worn(self) -> tuple[Piece, ...]:
         """What it wears by itself: low cloth shoes (履) on what goes with ankle and toes, up to the ankle's height, and
@@ -113,8 +118,14 @@ class Mannequin:
         if size == 1.0:
             return self
         marks = {name: place * size for name, place in self.marks.items()}
-        name = f"{self.name} x {size:g}"
-        return replace(self, name=name, vertices=self.vertices * size, heads=self.heads * size, marks=marks)
+        return replace(
+            self,
+            name=f"{self.name} x {size:g}",
+            vertices=self.vertices * size,
+            heads=self.heads * size,
+            marks=marks,
+            folded=None if self.folded is None else self.folded * size,
+        )
 
     def save(self, path: Path) -> None:
         """Writes one .npz: coordinates to a hundredth of a millimetre, weights to 1/65535."""
@@ -140,6 +151,8 @@ class Mannequin:
         parts = {name: getattr(self, name) for name in ("vertices", "faces", "heads", "weights")} | {
             f"mark {name}": place for name, place in sorted(self.marks.items())
         }
+        if self.folded is not None:
+            parts["folded"] = self.folded
         for name, array in parts.items():
             hashed.update(
                 f"{name} {array.shape} {array.dtype}".encode() + np.ascontiguousarray(array).tobytes()

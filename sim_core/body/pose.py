@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -30,11 +30,13 @@ class Pose:
 
     turns: joint and unit quaternion (real part first, that is not negative), in the order of JOINTS, without those
     that do not turn. A turn is about axes as they lie at rest, x to the figure's left, y up, z to its front; the
-    pelvis's turns the whole figure about its pelvis. Equal poses compare equal and hash alike.
+    pelvis's turns the whole figure about its pelvis. spread: how far its petticoat is, from 0, folded, to 1; no part of
+    a table. Equal poses compare equal and hash alike.
     """
 
     turns: tuple[tuple[str, Quaternion], ...] = ()
     shift: Vector = (0.0, 0.0, 0.0)
+    spread: float = field(default=1.0, repr=False)
 
     @staticmethod
     def of(table: Mapping[str, Any], where: str = "pose") -> Pose:
@@ -114,7 +116,7 @@ class Pose:
         """This pose, the other's joints turned as there instead; the ways of both roots are added."""
         turns = dict(self.turns) | dict(other.turns)
         a, b = self.shift, other.shift
-        return _posed(turns, (a[0] + b[0], a[1] + b[1], a[2] + b[2]))
+        return _posed(turns, (a[0] + b[0], a[1] + b[1], a[2] + b[2]), self.spread * other.spread)
 
     def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Pose:
         """This pose with its root so far [m] from where it was."""
@@ -123,7 +125,7 @@ class Pose:
     def facing(self, degrees: float) -> Pose:
         """This pose turned about the vertical through the pelvis, 0 = +z, 90 = +x."""
         turned = product(np.array(_turn((0.0, degrees, 0.0))), np.array(self.turn("pelvis")))
-        return _posed(dict(self.turns) | {"pelvis": _unit(turned)}, self.shift)
+        return _posed(dict(self.turns) | {"pelvis": _unit(turned)}, self.shift, self.spread)
 
     def towards(self, other: Pose, share: float) -> Pose:
         """The pose a share of the way to another, each joint by the shortest turn, evenly (slerp)."""
@@ -134,14 +136,15 @@ class Pose:
             for joint in {**dict(self.turns), **dict(other.turns)}
         }
         a, b = self.shift, other.shift
-        return _posed(turns, tuple((1.0 - share) * p + share * q for p, q in zip(a, b, strict=True)))
+        shift = tuple((1.0 - share) * p + share * q for p, q in zip(a, b, strict=True))
+        return _posed(turns, shift, (1.0 - share) * self.spread + share * other.spread)
 
     def mirrored(self) -> Pose:
         """What a looking glass at x = 0 shows."""
         turns = {}
         for joint, (w, x, y, z) in self.turns:
             turns[JOINTS[OTHER_SIDE[JOINTS.index(joint)]]] = (w, x, -y, -z)
-        return _posed(turns, (-self.shift[0], self.shift[1], self.shift[2]))
+        return _posed(turns, (-self.shift[0], self.shift[1], self.shift[2]), self.spread)
 
     @property
     def symmetric(self) -> bool:
@@ -153,10 +156,10 @@ class Pose:
         return bool((np.where(turned > 0.5, 2.0 * apart, np.inf) <= _EVEN).all() and way <= _EVEN)
 
 
-def _posed(turns: Mapping[str, Quaternion], shift: Sequence[float]) -> Pose:
+def _posed(turns: Mapping[str, Quaternion], shift: Sequence[float], spread: float = 1.0) -> Pose:
     """In the order of JOINTS, without what does not turn."""
     kept = tuple((joint, turns[joint]) for joint in JOINTS if turns.get(joint, _STILL) != _STILL)
-    return Pose(kept, (float(shift[0]), float(shift[1]), float(shift[2])))
+    return Pose(kept, (float(shift[0]), float(shift[1]), float(shift[2])), spread)
 
 
 def _shift(value: object, name: str) -> Vector:

@@ -5,7 +5,7 @@ import signal
 
 import numpy as np
 import pytest
-from bench.browser import enter
+from bench.browser import PATIENCE, displayed, enter
 from bench.track import RECORD, place, watch
 from bench.wire import wire
 from corridor_hall import write_corridor_hall
@@ -20,6 +20,7 @@ SPEED = 1.6  # [m/s]
 JUMP = 0.05  # [m]
 BUNCH = 0.2  # [s] of the server's words that may come at once
 NOTICE = "[data-testid=connection]"
+WALKED = "([[x, , z], way]) => { const at = hall.pose(); return Math.hypot(at.x - x, at.z - z) >= way; }"
 
 # Every change of the notice: when, and which state it shows.
 NOTICES = """
@@ -167,11 +168,13 @@ def test_a_cut_line_comes_back_to_where_one_stands(corridor, chromium):
         watch(far)
         enter(far, f"http://127.0.0.1:{line.port}/?lang=en")
         far.wait_for_timeout(1000)
+        start = displayed(far)
         far.evaluate(RECORD)
         far.keyboard.down("KeyW")
         far.wait_for_timeout(1000)
         line.cut()
         far.wait_for_timeout(5000)
+        far.wait_for_function(WALKED, arg=[start, 2.6], timeout=PATIENCE)
         far.keyboard.up("KeyW")
         far.wait_for_timeout(1000)
         _, way, walked = seen(far)

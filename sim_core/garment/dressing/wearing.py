@@ -113,7 +113,9 @@ class Wearing:
     def _name(self, half: bool) -> str:
         """Tells this body and its ways from any other."""
         assert self.figure is not None
+        spreads = [pose.spread for pose in self.moves.poses]
         told = (self.figure.name, self.moves, half, *([self.closing] if self.closing else []))
+        told += (spreads,) if min(spreads) < 1.0 else ()
         hashed = hashlib.sha256(repr(told).encode())
         for trail in self.trails:
             hashed.update(trail.frames.tobytes() + trail.faces.tobytes())

@@ -12,13 +12,25 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from sim_core.body import Cover, Figure, Mannequin, Pose, Stand, TBar, covered, load_motion, pose_named
+from sim_core.body import (
+    Cover,
+    Figure,
+    Mannequin,
+    Petticoat,
+    Pose,
+    Stand,
+    TBar,
+    covered,
+    load_motion,
+    pose_named,
+)
 from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
 from sim_core.garment.outfit.steps import Belt, Step, Touch
 from sim_core.garment.outfit.tables import (
+    CoverTable,
     LayerTable,
     OutfitTable,
     Place,
@@ -96,6 +108,8 @@ class _Reader:
                     )
         motion = load_motion(self._file("motion", read.motion)) if read.motion is not None else None
         layers = [self.layer(f"layer.{k}", table, stand) for k, table in enumerate(read.layer, 1)]
+        if read.cover is not None and read.cover.petticoat is not None:
+            layers = [_before_it_is_spread(layer) for layer in layers]
         self._check_belts(layers, wearer)
         if stand is not None:
             self._check_beside(layers)
@@ -145,12 +159,12 @@ class _Reader:
 
     def _wearer(self, file: Path, read: OutfitTable) -> Mannequin:
         """A figure that cloth can lie on: closed, with hands."""
-        wearer = Mannequin.load(file).sized(read.size)
+        wearer = bare = Mannequin.load(file).sized(read.size)
         if read.cover is not None:
-            dyes = Cover(*(read_dye(dye) for dye in (read.cover.bodice, read.cover.trousers)))
-            if dyes == Cover():
-                raise self._wrong("cover", "nothing of it has a colour – give bodice, trousers or both")
-            wearer = covered(wearer, dyes)
+            cover = _cover(read.cover)
+            if cover == Cover():
+                raise self._wrong("cover", "nothing of it is told – give bodice, trousers or petticoat")
+            wearer = self._of("cover.petticoat", lambda: covered(bare, cover))
         try:
             Figure(wearer, cell=LOOK).field(T_POSE)
         except SimCoreError as error:
@@ -289,6 +303,22 @@ class _Reader:
             return make()
         except SimCoreError as error:
             raise FileProblem(f"{self._path}: {key}: {error}") from error
+
+
+def _before_it_is_spread(layer: Layer) -> Layer:
+    """The layer, dressed on a petticoat that is folded as long as the wearer has not begun to take its last pose."""
+    begin = layer.program.start
+    if begin is None or not any(step.do == "pose" for step in layer.program.steps):
+        return layer
+    return replace(layer, program=replace(layer.program, start=replace(begin, spread=0.0)))
+
+
+def _cover(table: CoverTable) -> Cover:
+    below = table.petticoat
+    petticoat = (
+        None if below is None else Petticoat(read_dye(below.dye) or (1.0, 1.0, 1.0), below.girth, below.hem)
+    )
+    return Cover(read_dye(table.bodice), read_dye(table.trousers), petticoat)
 
 
 def _metres(place: tuple[float, float]) -> tuple[float, float]:

@@ -219,11 +219,21 @@ class StandTable(Table):
     bar_radius: Number | None = Field(None, ge=0.002, le=0.08, description="[m]")
 
 
+class PetticoatTable(Table):
+    dye: Colour = Field("#d8cbb2", description="its colour")
+    girth: Length = Field(1.5, description="round its hem [m]")
+    hem: Length = Field(0.16, description="of it above the floor [m]")
+
+
 class CoverTable(Table):
     bodice: Colour | None = Field(
         None, description="colour of one (抹胸) from the breast to the hips; left out: none"
     )
     trousers: Colour | None = Field(None, description="colour of trousers (裤) to the ankles; left out: none")
+    petticoat: PetticoatTable | None = Field(
+        None,
+        description="stiff petticoat (衬裙) from the hips down, over which a skirt fans out; left out: none",
+    )
 
 
 class OutfitTable(Table):

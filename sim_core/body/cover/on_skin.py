@@ -1,12 +1,11 @@
 """Close dress that goes with a figure's skin: a bodice and trousers, cut out of the figure's own surface and let out.
 
-What is worn beneath a garment that shall be seen, and hardly moves by itself, need not be simulated: a dress form is
-covered, and what lies over it meets the cover. Heights are those of the T-pose.
+Heights are those of the T-pose.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -15,7 +14,7 @@ from scipy.spatial import KDTree
 from sim_core.body.joints import JOINTS
 from sim_core.body.mannequin import Colour, Mannequin, Piece
 
-__all__ = ["Cover", "covered"]
+__all__ = ["on_skin"]
 
 TOP = 0.030  # [m] above the bust that a bodice (抹胸) begins
 OVER = 0.055  # [m] above the hips that it ends, over the trousers
@@ -29,22 +28,14 @@ ALIKE = 1e-6  # [m] from the mirror image of another vertex
 STEP = 0.01  # [m] between sections of a leg
 
 
-@dataclass(frozen=True)
-class Cover:
-    """Colours (sRGB, 0 to 1) of what a figure wears on its skin; None: it does not."""
-
-    bodice: Colour | None = None
-    trousers: Colour | None = None
-
-
-def covered(figure: Mannequin, cover: Cover) -> Mannequin:
-    """The figure in its cover, with vertices on every edge of it; joints and marks are the same."""
+def on_skin(figure: Mannequin, bodice: Colour | None, trousers: Colour | None) -> Mannequin:
+    """The figure in a bodice and trousers of these colours (None: without), with vertices on every edge of them."""
     marks = figure.marks
     top, over = float(marks["bust"][1]) + TOP, float(marks["hip"][1]) + OVER
     waist = 0.5 * (over + float(marks["waist"][1]))
     hem = float(figure.heads[JOINTS.index("ankle_l"), 1]) + HEM
-    lines = [top, top - EDGE, over, over + EDGE] if cover.bodice else []
-    lines += [hem, hem + EDGE] + ([] if cover.bodice else [waist, waist - EDGE]) if cover.trousers else []
+    lines = [top, top - EDGE, over, over + EDGE] if bodice else []
+    lines += [hem, hem + EDGE] + ([] if bodice else [waist, waist - EDGE]) if trousers else []
     # No face is its own mirror image: it would be cut one way round.
     figure = _cut(_evened(figure), 0.0, axis=0)
     for line in lines:
@@ -52,15 +43,15 @@ def covered(figure: Mannequin, cover: Cover) -> Mannequin:
     y, body = figure.vertices[:, 1], figure.trunk()
     pieces, off = list[Piece](), np.zeros(len(y))
     x = figure.vertices.copy()
-    if cover.trousers:
-        above = over if cover.bodice else waist
-        pieces.append(Piece("trousers", cover.trousers, body & _within(y, hem, above)))
-        grown = _rises(y - hem) * (1.0 if cover.bodice else _rises(waist - y))
+    if trousers:
+        above = over if bodice else waist
+        pieces.append(Piece("trousers", trousers, body & _within(y, hem, above)))
+        grown = _rises(y - hem) * (1.0 if bodice else _rises(waist - y))
         off = np.where(pieces[-1].vertices, EASE * grown, off)
         x[:, [0, 2]] += (pieces[-1].vertices * _rises(y - hem))[:, None] * _hanging(figure, hem)
-    if cover.bodice:
-        pieces.append(Piece("bodice", cover.bodice, body & _within(y, over, top)))
-        beneath = EASE if cover.trousers else 0.0
+    if bodice:
+        pieces.append(Piece("bodice", bodice, body & _within(y, over, top)))
+        beneath = EASE if trousers else 0.0
         rise = np.minimum(beneath + (OUTER - beneath) * _rises(y - over), OUTER * _rises(top - y))
         off = np.where(pieces[-1].vertices, rise, off)
     x = _mirrored(figure.vertices, x + off[:, None] * _normals(figure))
