@@ -144,21 +144,37 @@ def test_every_form_is_filled_in_and_sent_by_key_alone(
 
 
 def test_what_is_dragged_on_the_plan_is_placed_by_key_alone(office_hall, chromium, ready):
-    """The numbers beside the drawing move the exhibit on it, and are what is saved."""
+    """The numbers beside the drawing move the exhibit on it, and are what is saved; both while the walk is awaited."""
     page = page_of(chromium, ready.visitors["clerk"], 1280)
     page.goto(f"{office_hall.url}/office/collection/crate/place?lang=en")
-    for name, value in (("x", "-5.5"), ("z", "4.25"), ("facing", "90")):
-        for _ in range(80):
-            if page.evaluate("document.activeElement.id") == f"place-place.{name}":
-                break
-            page.keyboard.press("Tab")
-        page.keyboard.press("Control+A")
-        page.keyboard.type(value)
-    moved = page.locator("#own").get_attribute("transform")
-    assert re.findall(r"-?[\d.]+", moved) == ["-5.5", "4.25", "-90"]
+
+    def write(*numbers: str) -> None:
+        for name, value in zip(("x", "z", "facing"), numbers, strict=True):
+            for _ in range(80):
+                if page.evaluate("document.activeElement.id") == f"place-place.{name}":
+                    break
+                page.keyboard.press("Tab")
+            page.keyboard.press("Control+A")
+            page.keyboard.type(value)
+
+    def moved() -> list[str]:
+        return re.findall(r"-?[\d.]+", page.locator("#own").get_attribute("transform"))
+
+    def placed() -> tuple[float, ...]:
+        answer = ready.visitors["clerk"].ask("GET", "/api/office/collection/crate/place")
+        return tuple(json.loads(answer.body)["place"][name] for name in ("x", "z", "facing"))
+
+    write("-5.5", "4.25", "90")
+    assert moved() == ["-5.5", "4.25", "-90"]
+    with page.expect_navigation(timeout=120_000):
+        page.keyboard.press("Enter")
+    assert placed() == (-5.5, 4.25, 90.0)
+    write("-5.25", "4", "45")
+    page.locator("#reached:not([data-state=wait]) :first-child").wait_for(timeout=240_000)
+    assert moved() == ["-5.25", "4", "-45"], "what was written is lost when the walk is done"
     page.keyboard.press("Enter")
-    page.get_by_role("status").first.wait_for(timeout=120_000)
-    answer = ready.visitors["clerk"].ask("GET", "/api/office/collection/crate/place")
-    place = json.loads(answer.body)["place"]
-    assert (place["x"], place["z"], place["facing"]) == (-5.5, 4.25, 90.0)
+    page.wait_for_function(
+        "document.getElementById('place-place.x').defaultValue === '-5.25'", timeout=120_000
+    )
+    assert placed() == (-5.25, 4.0, 45.0)
     page.context.close()

@@ -37,13 +37,18 @@ function drag() {
   for (const end of ["pointerup", "pointercancel"]) own.addEventListener(end, () => (held = null));
 }
 
-/** Until the walk through the hall is done: then the page says what came of it. */
+/** Until the walk through the hall is done; then what came of it is put in, and what is written beside it stays. */
 function listen(told) {
+  const ask = (address) => fetch(address, { credentials: "same-origin" });
   const again = async () => {
-    const answer = await fetch(told.dataset.ask, { credentials: "same-origin" }).catch(() => null);
+    const answer = await ask(told.dataset.ask).catch(() => null);
     const found = answer?.ok ? await answer.json() : null;
-    if (found && found.reached !== null) window.location.reload();
-    else setTimeout(again, 1500);
+    const later = found && found.reached !== null && (await ask(window.location.href).catch(() => null));
+    if (!later?.ok) return void setTimeout(again, 1500);
+    const page = new DOMParser().parseFromString(await later.text(), "text/html").getElementById("reached");
+    told.replaceChildren(...page.childNodes);
+    told.dataset.state = page.dataset.state;
+    if (page.dataset.ask) setTimeout(again, 1500); // changed once more meanwhile
   };
   setTimeout(again, 1500);
 }

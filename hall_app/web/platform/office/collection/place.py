@@ -87,17 +87,16 @@ class Places:
         return Field(one.name, one.label, "select", one.value, needed=False, choices=choices)
 
     def _reached(self, asking: Asking, key: str) -> str:
+        """One live region whatever is known, so that the page's script can put in what became of the walk."""
         word, (reached, wrong) = asking.word, self._standing(key)
-        if wrong:
-            return f'<div id="reached" data-state="no">{listed_problems(asking, wrong)}</div>'
-        if reached is None:
-            told = word("正在步行检查全馆通路…", "Walking through the hall to see that all is reached …")
+        state, more, told = "yes", "", word("每件展品都能走到。", "Every exhibit can be reached on foot.")
+        if reached is None and not wrong:
             at, look = f"collection/{key}/place", word("再看一次", "Look again")
-            again = f'<a href="{asking.address(f"/office/{at}")}">{look}</a>'
-            more = f'data-state="wait" data-ask="/api/office/{at}"'
-            return f'<p id="reached" class="done" role="status" {more}>{told} {again}</p>'
-        told = word("每件展品都能走到。", "Every exhibit can be reached on foot.")
-        return f'<p id="reached" class="done" role="status" data-state="yes">{told}</p>'
+            state, more = "wait", f' data-ask="/api/office/{at}"'
+            told = word("正在步行检查全馆通路…", "Walking through the hall to see that all is reached …")
+            told += f' <a href="{asking.address(f"/office/{at}")}">{look}</a>'
+        inside = listed_problems(asking, wrong) or f'<p class="done">{told}</p>'
+        return f'<div id="reached" role="status" data-state="{"no" if wrong else state}"{more}>{inside}</div>'
 
 
 def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -> str:
