@@ -35,7 +35,7 @@ class Fineness:
     smooth: int
 
 
-FINENESS = {"hall": Fineness(26, 160, 32, 2), "close": Fineness(84, 340, 56, 3)}
+FINENESS = {"hall": Fineness(26, 160, 32, 2), "close": Fineness(78, 300, 48, 3)}
 
 
 def write_mirror(folder: Path) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from sim_core.body.beneath import BAND, HANDS, MARGIN, Beneath, Box, Surface
 from sim_core.body.joints import JOINTS
@@ -14,6 +13,7 @@ from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
 from sim_core.cloth.contact import DistanceField, MovingGrid, Solid, hull_faces, moving_mesh
 from sim_core.errors import SimCoreError
+from sim_core.mesh.geometry import hull_girth
 
 __all__ = ["Figure"]
 
@@ -64,10 +64,7 @@ class Figure:
         """What a tape measure round the trunk says at a height [m]; 0 above and below it."""
         trunk = self.mesh(pose)[0][self.trunk()]
         near = trunk[np.abs(trunk[:, 1] - height) <= NEAR][:, [0, 2]]
-        if len(near) < 3:
-            return 0.0
-        ring = near[ConvexHull(near).vertices]
-        return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())
+        return hull_girth(near)
 
     def beneath(self, pose: Pose, *, half: bool = False) -> Beneath:
         """The posed figure as what lies beneath cloth."""

@@ -10,6 +10,7 @@ from scipy.spatial import ConvexHull
 from sim_core.body.joints import JOINTS
 from sim_core.body.mannequin import Colour, Mannequin, Piece
 from sim_core.errors import SimCoreError
+from sim_core.mesh.geometry import line_girth, tangent_line
 
 __all__ = ["Petticoat", "in_petticoat"]
 
@@ -43,7 +44,7 @@ def in_petticoat(figure: Mannequin, petticoat: Petticoat) -> Mannequin:
     hips = x[(x[:, 1] < top + ABOVE) & (x[:, 1] > top - BELOW)][:, [0, 2]]
     hips = np.concatenate([hips, hips * [-1.0, 1.0]])
     corners = hips[ConvexHull(hips).vertices]
-    narrow = float(np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).sum())
+    narrow = line_girth(corners)
     if petticoat.girth < narrow:
         raise SimCoreError(f"girth: {petticoat.girth:g} m – the hips are {narrow:.2f} m round; give more")
     if petticoat.hem > top - 0.1:
@@ -80,20 +81,16 @@ def _bell(corners: np.ndarray, heights: np.ndarray, wider: np.ndarray) -> tuple[
     """Vertices (V, 3) [m] and faces (F, 3), counter-clockwise from outside, of a closed surface: lines about a convex
     one (m, 2), `wider` (L,) [m] than that all round, at descending heights (L,), and a lid to both ends.
 
-    A line is where tangents meet, p = h n + h' t, h being how far it reaches in the direction n. Its own mirror image.
+    It is its own mirror image.
     """
     angle = 2 * np.pi * np.arange(ROUND) / ROUND
-    outward, onward = (
-        np.stack([np.sin(angle), np.cos(angle)], 1),
-        np.stack([np.cos(angle), -np.sin(angle)], 1),
-    )
+    outward = np.stack([np.sin(angle), np.cos(angle)], 1)
     centre = np.array([0.0, corners[:, 1].mean()])
     reach = (outward @ (corners - centre).T).max(1)
     window = np.hanning(2 * ROUNDED + 3)[1:-1]
     spread = np.convolve(np.tile(reach, 3), window / window.sum(), "same")[ROUND : 2 * ROUND]
     reach = 0.5 * (spread + np.roll(spread[::-1], 1))
-    slope = (np.roll(reach, -1) - np.roll(reach, 1)) * ROUND / (4 * np.pi)
-    line = centre + reach[:, None] * outward + slope[:, None] * onward
+    line = tangent_line(reach, outward, centre)
     rings = []
     for y, off in zip(heights, wider, strict=True):
         x, z = (line + off * outward).T

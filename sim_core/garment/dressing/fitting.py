@@ -14,8 +14,9 @@ from sim_core.garment.dressing.course import Moves, courses
 from sim_core.garment.dressing.places import nearest
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.pattern import Cloth
-from sim_core.garment.pattern.sections import hull_girth, sections
+from sim_core.garment.pattern.sections import sections
 from sim_core.garment.placement import Flat, Ground, Wrapped
+from sim_core.mesh.geometry import hull_girth
 
 __all__ = ["check_fits", "first_positions"]
 

@@ -12,7 +12,7 @@ from sim_core.garment.dressing.course import Course
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Spot, both_halves, latches
-from sim_core.garment.pattern.sections import hull_girth
+from sim_core.mesh.geometry import hull_girth
 from sim_core.metrics import components
 
 __all__ = ["Places", "belt_pairs", "girth_there", "nearest"]

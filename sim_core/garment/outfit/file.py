@@ -315,9 +315,7 @@ def _before_it_is_spread(layer: Layer) -> Layer:
 
 def _cover(table: CoverTable) -> Cover:
     below = table.petticoat
-    petticoat = (
-        None if below is None else Petticoat(read_dye(below.dye) or (1.0, 1.0, 1.0), below.girth, below.hem)
-    )
+    petticoat = None if below is None else Petticoat(read_dye(below.dye), below.girth, below.hem)
     return Cover(read_dye(table.bodice), read_dye(table.trousers), petticoat)
 
 

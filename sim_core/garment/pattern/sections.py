@@ -1,16 +1,15 @@
-"""How wide a garment is where a limb lies in it: closed sections of the sewn cloth as it is laid, and girths."""
+"""How wide a garment is where a limb lies in it: closed sections of the sewn cloth as it is laid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.metrics import components
 
-__all__ = ["Section", "hull_girth", "sections"]
+__all__ = ["Section", "sections"]
 
 
 @dataclass(frozen=True)
@@ -59,12 +58,3 @@ def sections(cloth: Cloth, laid: np.ndarray, axis: int, at: float) -> list[Secti
         own = corners[of_face == part].reshape(-1, 3)
         out.append(Section(float(length[of_face == part].sum()), own.min(0), own.max(0)))
     return out
-
-
-def hull_girth(points: np.ndarray) -> float:
-    """Length [m] of the convex hull of points (N, 2): what a tape measure round them says; 0 of fewer than three."""
-    try:
-        ring = points[ConvexHull(points).vertices]
-    except (QhullError, ValueError):
-        return 0.0
-    return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, overload
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -116,6 +116,10 @@ def read_spot(
     return Spot(table.panel, (x, y), table.side or own)
 
 
+@overload
+def read_dye(text: str) -> tuple[float, float, float]: ...
+@overload
+def read_dye(text: str | None) -> tuple[float, float, float] | None: ...
 def read_dye(text: str | None) -> tuple[float, float, float] | None:
     """sRGB 0..1 of '#rrggbb'."""
     if text is None:

@@ -10,6 +10,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from sim_core.garment.pattern import Cloth, Opened, Pattern, Plies
+from sim_core.mesh.geometry import tangent_line
 
 __all__ = ["Folds", "Tent"]
 
@@ -88,13 +89,9 @@ class _Ring:
     @staticmethod
     def of(reach: np.ndarray, outward: np.ndarray, centre: np.ndarray) -> _Ring:
         """The line about a centre (2,) [m] that reaches so far (n,) [m] in directions (n + 1, 2), the last as the
-        first: where its tangents meet, p = h n + h' t."""
-        step = 2 * np.pi / len(reach)
-        slope = (np.roll(reach, -1) - np.roll(reach, 1)) / (2 * step)
-        onward = np.stack([outward[:, 1], -outward[:, 0]], axis=1)
-        points = (
-            centre + np.r_[reach, reach[:1]][:, None] * outward + np.r_[slope, slope[:1]][:, None] * onward
-        )
+        first."""
+        points = tangent_line(reach, outward[:-1], centre)
+        points = np.concatenate([points, points[:1]])
         return _Ring(points, outward, np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
     @property

@@ -11,8 +11,9 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement.ground import Ground
 from sim_core.garment.placement.tent import Folds, Tent
+from sim_core.mesh.geometry import line_girth
 
-__all__ = ["Wrapped", "girth"]
+__all__ = ["Wrapped"]
 
 FINE = 0.002  # [m] between the points of the line
 SLAB = 0.01  # [m] of the wearer that a line about it is drawn round at least
@@ -50,7 +51,7 @@ class Wrapped:
             depths = np.linspace(0.0, float(high[1] - low[1]), LEVELS)
             hulls = [_section(ground, top - max(float(depth), SLAB), top) for depth in depths]
             folds = Folds.of(pattern, cloth)
-            need = girth(hulls[0]) + 2 * np.pi * room
+            need = line_girth(hulls[0]) + 2 * np.pi * room
             _check_width(pattern, folds.width, need, self.mark)
             if closed or folds.width < 1.02 * need:
                 room += (folds.width - need) / (2 * np.pi)
@@ -58,10 +59,10 @@ class Wrapped:
             return tent.hung(folds, cloth.vertices[:, 1] - low[1], self.gap) + [0.0, top, 0.0]
         hull = _section(ground, lowest, top)
         width = float(high[0] - low[0])
-        need = girth(hull) + 2 * np.pi * room
+        need = line_girth(hull) + 2 * np.pi * room
         _check_width(pattern, width, need, self.mark)
         if closed or width < 1.02 * need:
-            line = _around(hull, np.radians(self.begin), (width - girth(hull)) / (2 * np.pi), 0.0, width)
+            line = _around(hull, np.radians(self.begin), (width - line_girth(hull)) / (2 * np.pi), 0.0, width)
         else:
             line = _around(hull, np.radians(self.begin), room, self.gap, width)
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
@@ -77,11 +78,6 @@ def _check_width(pattern: Pattern, width: float, need: float, mark: str) -> None
             f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {mark!r} it needs "
             f"{need:.3f} m; make it wider or place it elsewhere"
         )
-
-
-def girth(hull: np.ndarray) -> float:
-    """Length [m] of a closed convex line (n, 2): what a tape measure says."""
-    return float(np.linalg.norm(hull - np.roll(hull, 1, axis=0), axis=1).sum())
 
 
 def _section(ground: Ground, low: float, high: float) -> np.ndarray:
