@@ -1,8 +1,8 @@
 """One robe in six silks, as the close-up of the page shows it: a contact sheet.
 
-python tests/bench/robe_silks.py [--out docs/pictures/robe-silks.jpg] [--garment robe.npz] [--weave NAME …]
+python tests/bench/robe_silks.py [--out docs/pictures/robe-silks.jpg] [--weave NAME …]
 
-The robe of assets/outfits/robe.toml is dressed once, in its own silk, and shown in each cloth: the drape is the same.
+The round-collared robe as it is baked, in its own silk, is shown in each cloth: the drape is the same.
 """
 
 from __future__ import annotations
@@ -27,12 +27,14 @@ from bench.browser import enter, open_browser  # noqa: E402
 from bench.pictures import DESK, new_page, open_exhibit  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
-from sim_core.garment import Clothed, Garment, dress, load_outfit, write_glb  # noqa: E402
+from sim_core.garment import Clothed, Garment, load_outfit, write_glb  # noqa: E402
 from sim_core.garment.levels import shown_figure  # noqa: E402
 from sim_core.weave import Weave  # noqa: E402
+from sim_core.weave.maps import SHEER, coverage  # noqa: E402
 
 ASSETS = ROOT / "assets"
-OUTFIT = ASSETS / "outfits" / "robe.toml"
+OUTFIT = ASSETS / "outfits" / "ming-yuanling.toml"
+ROBE = ASSETS / "exhibits" / "ming-yuanling" / "baked" / "beneath-1.npz"
 SILKS = ("vine-ling", "lian-duan", "cloud-jin", "stripe-juan", "flower-zhuanghua", "cup-luo")
 FRAME = (250, 30, 690, 700)  # left, top, right, bottom of the robe in the close-up
 FOOT, COLUMNS = 34, 3
@@ -56,20 +58,16 @@ height = 1.6
 """
 
 
-def robe(file: Path | None) -> Garment:
-    """Dressed anew, or as it was kept."""
-    return Garment.load(file) if file else dress(load_outfit(OUTFIT))[0]
-
-
-def wearer_of(garment: Garment) -> Any:
+def wearer_of(garment: Garment, *, sheer: bool) -> Any:
     """The figure as far as the robe lets it be seen."""
     outfit = load_outfit(OUTFIT)
     assert outfit.wearer is not None
     body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-    return shown_figure(*body, garment.positions, garment.faces)
+    hidden = garment.faces[:0] if sheer else garment.faces
+    return shown_figure(*body, garment.positions, hidden, worn=outfit.wearer.worn())
 
 
-def hang(folder: Path, number: int, name: str, garment: Garment, figure: Any) -> None:
+def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
     """An exhibit of the robe cut from a silk, in the silk's own colours."""
     home = folder / "exhibits" / f"silk-{number}"
     (home / "media").mkdir(parents=True)
@@ -82,6 +80,7 @@ def hang(folder: Path, number: int, name: str, garment: Garment, figure: Any) ->
         garment, weave=weave.to_dict(), weaves={}, dye=None, dyes=tuple(None for _ in garment.panels)
     )
     clothed = Clothed.woven(cut, 1024)
+    figure = wearer_of(garment, sheer=coverage(clothed.of(0)) < SHEER)
     for precision in ("hall", "close"):
         write_glb(home / "media" / f"{precision}.glb", [clothed], precision=precision, figure=figure)
 
@@ -123,17 +122,15 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures" / "robe-silks.jpg")
-    parser.add_argument("--garment", type=Path, help="the dressed robe, as `simcore dress --out` wrote it")
     parser.add_argument("--weave", nargs="+", default=SILKS, metavar="NAME", help="of assets/weaves")
     arguments = parser.parse_args()
-    garment = robe(arguments.garment)
-    figure = wearer_of(garment)
+    garment = Garment.load(ROBE)
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         content = work / "content"
         shutil.copytree(ASSETS, content, ignore=shutil.ignore_patterns("exhibits"))
         for number, name in enumerate(arguments.weave):
-            hang(content, number, name, garment, figure)
+            hang(content, number, name, garment)
         made = sheet(shoot(content, len(arguments.weave), work), arguments.weave)
     made.save(arguments.out, quality=86)
     print(arguments.out)
