@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from hall_app.build.film import Look, Part, Piece
-from hall_app.content.bakes.accessories import cloth_area, garment_at
+from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
 
 if TYPE_CHECKING:
     from sim_core.body import Mannequin
@@ -49,8 +49,12 @@ class Wardrobe:
     @cached_property
     def filmed(self) -> int:
         """The layer with which the film begins: the garment one comes to see, whose accessories follow."""
-        cloths = [layer.cloth for layer in self.outfit.layers]
-        return garment_at([cloth_area(cloth.vertices, cloth.faces) for cloth in cloths])
+        return garment_at(
+            [
+                is_accessory(cloth_area(layer.cloth.vertices, layer.cloth.faces), layer.accessory)
+                for layer in self.outfit.layers
+            ]
+        )
 
     def film(self) -> Look:
         """What the film shows, what moves first: layers, the outermost first, and the wearer.
@@ -125,24 +129,16 @@ class Wardrobe:
 
     def _figure(self, layers: Sequence[Clothed], precision: str, played: Played | None) -> Any:
         """The wearer as far as no dense cloth hides it, as they stand and as they move."""
+        from sim_core.garment import opaque
         from sim_core.garment.levels import shown_figure
-        from sim_core.weave.maps import SHEER, coverage
 
         wearer = self.outfit.wearer
         if wearer is None:
             return None
-        points, faces, count = [], [], 0
-        for layer in layers:
-            garment = layer.garment
-            dense = [k for k in range(len(garment.panels)) if coverage(layer.of(k)) >= SHEER]
-            points.append(garment.positions)
-            faces.append(garment.faces[np.isin(garment.panel, dense)] + count)
-            count += len(garment.positions)
         most = HALL_FIGURE if precision == "hall" else None
         body = wearer.posed(self.outfit.pose), wearer.faces
         moments = [] if played is None else _moments(played, wearer)
-        cloth = np.concatenate(points), np.concatenate(faces)
-        shown = shown_figure(*body, *cloth, triangles=most, moments=moments, worn=wearer.worn())
+        shown = shown_figure(*body, *opaque(layers), triangles=most, moments=moments, worn=wearer.worn())
         reach = max((_reach(figure) for figure, _ in moments), default=0.0)
         radius, height = shown.base
         return replace(shown, base=(max(radius, reach + ROUND), height))

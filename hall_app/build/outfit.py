@@ -17,7 +17,7 @@ from hall_app.build.film import Film, filming, stills
 from hall_app.build.look import Wardrobe
 from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
-from hall_app.content.bakes.accessories import cloth_area, garment_at
+from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
 from hall_app.content.bakes.steps import Step, beneath_budget, budget, chosen_steps, hall_budget, study_of
@@ -258,7 +258,14 @@ def _record(
     """What the hall tells of this bake; every number comes from a measurement."""
     errors: dict[str, float] = {}
     stages: dict[str, float] = {}
-    shown = garment_at([cloth_area(garment.pattern, garment.pattern_faces) for garment in garments])
+    shown = garment_at(
+        [
+            is_accessory(
+                cloth_area(garment.pattern, garment.pattern_faces), garment.provenance.get("accessory")
+            )
+            for garment in garments
+        ]
+    )
     for number, (garment, light) in enumerate(zip(garments, levels, strict=True), 1):
         before = "" if number == len(garments) else f"{garment.name}_"
         errors |= {f"{before}{name}": value for name, value in _figures(garment, light).items()}

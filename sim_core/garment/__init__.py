@@ -5,7 +5,7 @@ from sim_core.garment.clip import Clip
 from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
-from sim_core.garment.glb import Clothed, write_glb
+from sim_core.garment.glb import Clothed, opaque, write_glb
 from sim_core.garment.levels import choose_detail
 from sim_core.garment.outfit import Layer, Outfit, load_motion, load_outfit
 from sim_core.garment.pattern import Pattern
@@ -33,5 +33,6 @@ __all__ = [
     "load_outfit",
     "move",
     "moving_errors",
+    "opaque",
     "write_glb",
 ]

@@ -248,18 +248,17 @@ def _progress(fraction: float, label: str) -> None:
 
 
 def _write_model(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
-    from sim_core.garment import Clothed, write_glb
+    from sim_core.garment import Clothed, opaque, write_glb
     from sim_core.garment.levels import shown_figure
 
-    figure = None
-    if outfit.wearer is not None:
-        worn = garments[-1]
-        body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-        figure = shown_figure(*body, worn.positions, worn.faces, worn=outfit.wearer.worn())
     clothed = [
         Clothed.woven(garment, loom=layer.loom)
         for garment, layer in zip(garments, outfit.layers, strict=True)
     ]
+    figure = None
+    if outfit.wearer is not None:
+        body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
+        figure = shown_figure(*body, *opaque(clothed), worn=outfit.wearer.worn())
     write_glb(path, clothed, figure=figure)
 
 

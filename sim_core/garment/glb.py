@@ -39,7 +39,7 @@ LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 2048  # a side, of the textures that every telephone has
-CELL_QUALITY, FIGURE_QUALITY = 82, 88  # JPEG
+SLUB_QUALITY, CELL_QUALITY, FIGURE_QUALITY = 85, 82, 88  # JPEG
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,18 @@ class Clothed:
             return loom.maps(Weave.from_dict(told), pixels)
 
         return Clothed(garment, drawn(garment.weave), {name: drawn(w) for name, w in garment.weaves.items()})
+
+
+def opaque(layers: Sequence[Clothed]) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (P, 3) [m] of all layers, and the faces (F, 3) that nothing is seen through."""
+    points, faces, count = [], [], 0
+    for layer in layers:
+        garment = layer.garment
+        dense = [k for k in range(len(garment.panels)) if coverage(layer.of(k)) >= SHEER]
+        points.append(garment.positions)
+        faces.append(garment.faces[np.isin(garment.panel, dense)] + count)
+        count += len(garment.positions)
+    return np.concatenate(points), np.concatenate(faces)
 
 
 def write_glb(
@@ -305,7 +317,7 @@ def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict
     cover, mean = coverage(maps), mean_colour(maps)
     material = _silk(dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
-    normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
+    normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile, quality=SLUB_QUALITY))
     material["normalTexture"] = {**normal, "scale": 0.5}
     own = textures.setdefault(f"of {id(maps)}", {})
     picture, factor = seen_afar(maps, dye)

@@ -27,10 +27,9 @@ from bench.browser import enter, open_browser  # noqa: E402
 from bench.pictures import DESK, new_page, open_exhibit  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
-from sim_core.garment import Clothed, Garment, load_outfit, write_glb  # noqa: E402
+from sim_core.garment import Clothed, Garment, load_outfit, opaque, write_glb  # noqa: E402
 from sim_core.garment.levels import shown_figure  # noqa: E402
 from sim_core.weave import Weave  # noqa: E402
-from sim_core.weave.maps import SHEER, coverage  # noqa: E402
 
 ASSETS = ROOT / "assets"
 OUTFIT = ASSETS / "outfits" / "ming-yuanling.toml"
@@ -58,13 +57,12 @@ height = 1.6
 """
 
 
-def wearer_of(garment: Garment, *, sheer: bool) -> Any:
+def wearer_of(robe: Clothed) -> Any:
     """The figure as far as the robe lets it be seen."""
     outfit = load_outfit(OUTFIT)
     assert outfit.wearer is not None
     body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-    hidden = garment.faces[:0] if sheer else garment.faces
-    return shown_figure(*body, garment.positions, hidden, worn=outfit.wearer.worn())
+    return shown_figure(*body, *opaque([robe]), worn=outfit.wearer.worn())
 
 
 def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
@@ -80,7 +78,7 @@ def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
         garment, weave=weave.to_dict(), weaves={}, dye=None, dyes=tuple(None for _ in garment.panels)
     )
     clothed = Clothed.woven(cut, 1024)
-    figure = wearer_of(garment, sheer=coverage(clothed.of(0)) < SHEER)
+    figure = wearer_of(clothed)
     for precision in ("hall", "close"):
         write_glb(home / "media" / f"{precision}.glb", [clothed], precision=precision, figure=figure)
 

@@ -208,6 +208,8 @@ def test_a_film_begins_with_the_garment_and_its_belt_follows():
     for name, begins in (("ming-yuanling", 0), ("han-gown", 1), ("ming-mamian", 2)):
         outfit = load_outfit(ASSETS / f"outfits/{name}.toml", ASSETS)
         assert Wardrobe(outfit).filmed == begins, name
+    told = [replace(layer, accessory=k > 0) for k, layer in enumerate(outfit.layers)]
+    assert Wardrobe(replace(outfit, layers=tuple(told))).filmed == 0, "an outfit may tell its accessories"
 
 
 def test_what_is_not_worn_yet_is_not_in_the_picture(tmp_path):

@@ -55,6 +55,7 @@ WORN = {
     "spread": (Worn("robe", "flat", seams=True, sewn=True, spread=True),),
     "belted": (replace(ROBE, cloth=3.3), Worn("belt", "wrapped", cloth=0.06)),
     "layered": (ROBE, Worn("pibo", "alongpath", seams=True, half=True)),
+    "scarfed": (replace(ROBE, cloth=1.8), Worn("pibo", "alongpath", seams=True, cloth=0.9, accessory=True)),
 }
 UNDER = {f"robe_{name}": value for name, value in (CLOTH | SEWN | MODELS | SIZES).items()}
 GOOD = CLOTH | SEWN | SIZES | MODELS | UNDER
@@ -125,7 +126,9 @@ def test_every_limit_is_kept_by_good_figures(name: str):
 
 def test_what_a_belt_goes_round_is_as_fine_as_what_is_worn_outermost():
     assert "robe_triangles" not in judged("layered"), "what lies beneath a garment is seen at its edges"
-    assert judged("belted")["robe_triangles"].limit == "at least 11000"
+    for name, over in (("belted", 200), ("scarfed", 5500)):
+        assert judged(name)["robe_triangles"].limit == "at least 11000"
+        assert judged(name)["triangles"].limit == f"at least {over}"
 
 
 def test_halves_are_compared_only_where_one_was_dressed():

@@ -84,7 +84,7 @@ def test_the_doors_open_while_a_garment_is_baked_and_a_superseded_bake_ends(tmp_
         assert [exhibit["id"] for exhibit in scene["exhibits"]] == ["box"]
         assert scene["preparing"] == ["scarf"]
         assert scene["problems"] == 0
-        until(lambda: bake_work(data, "scarf", key()).is_dir(), hall, 60)
+        until(lambda: bake_work(data, "scarf", key()).is_dir(), hall, 300)
         first, before = builds_of(hall.process.pid), bake_work(data, "scarf", key())
         edit(content / "exhibits/box/exhibit.toml", "Plain box", "Another title")
         until(lambda: title(hall, "Another title"), hall)

@@ -18,7 +18,7 @@ from sim_core.body import Beneath, Surface
 from sim_core.cloth import Contact, Holds, Phase
 from sim_core.cloth.contact import solid_mesh
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
-from sim_core.garment import Clothed, Garment, Pattern, Settled, Stand, choose_detail, write_glb
+from sim_core.garment import Clothed, Garment, Pattern, Settled, Stand, choose_detail, opaque, write_glb
 from sim_core.mesh import panel_mesh
 from sim_core.weave import Weave, solve
 from sim_core.weave.maps import FiguredMaps, figured_maps
@@ -296,6 +296,15 @@ def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
     else:
         assert "baseColorTexture" not in cloth["pbrMetallicRoughness"]
         assert cloth["pbrMetallicRoughness"]["baseColorFactor"][3] == pytest.approx(120 / 255, abs=1e-3)
+
+
+def test_only_dense_cloth_hides_what_lies_beneath() -> None:
+    dense, sheer = arched(0.05), arched(0.04)
+    positions, faces = opaque([Clothed(dense, plain_maps()), Clothed(sheer, plain_maps(120))])
+    assert np.array_equal(positions, np.concatenate([dense.positions, sheer.positions]))
+    assert np.array_equal(faces, dense.faces)
+    _, over = opaque([Clothed(sheer, plain_maps(120)), Clothed(dense, plain_maps())])
+    assert np.array_equal(over, dense.faces + len(sheer.positions))
 
 
 @pytest.mark.parametrize("precision", ["close", "hall"])

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hall_app.content.bakes.accessories import cloth_area, garment_at
+from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
 from hall_app.content.bakes.steps import PATIENCE, PATIENCE_WHOLE
 
 __all__ = ["Limit", "Worn", "limits_of", "writer"]
@@ -20,7 +20,8 @@ TRIANGLES = 11_000  # that the garment one comes to see has at least
 class Worn:
     """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
     whether one half was dressed against its mirror image, whether others are worn over it, whether it hangs on a T-bar,
-    where robes are placed as they are on a wearer, and how much cloth it is of [m2]."""
+    where robes are placed as they are on a wearer, how much cloth it is of [m2], and whether its outfit calls it an
+    accessory."""
 
     name: str
     way: str
@@ -30,6 +31,7 @@ class Worn:
     beneath: bool = False
     spread: bool = False
     cloth: float = 1.0
+    accessory: bool | None = None
 
     @staticmethod
     def of(garment: Any, *, beneath: bool) -> Worn:
@@ -38,7 +40,8 @@ class Worn:
         whole, way = garment.provenance["whole"], str(garment.provenance["way"])
         spread = way not in ON_STAND and "stand" in garment.provenance
         cloth = cloth_area(garment.pattern, garment.pattern_faces)
-        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, cloth)
+        told = garment.provenance.get("accessory")
+        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, cloth, told)
 
     @property
     def on_stand(self) -> bool:
@@ -108,7 +111,7 @@ def limits_of(
 def _least_triangles(worn: Worn, outfit: Sequence[Worn]) -> int | None:
     """Triangles asked of a garment on a wearer: of the one that one comes to see, and for their cloth as many of the
     accessories over it, so that none is coarser. None of what lies beneath."""
-    at = garment_at([each.cloth for each in outfit])
+    at = garment_at([is_accessory(each.cloth, each.accessory) for each in outfit])
     if worn.on_stand or worn in outfit[:at]:
         return None
     return math.ceil(TRIANGLES * min(1.0, worn.cloth / outfit[at].cloth))

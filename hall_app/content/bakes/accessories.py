@@ -1,4 +1,4 @@
-"""Which of an outfit's layers is the garment one comes to see: a belt over a robe is an accessory to it."""
+"""Which of an outfit's layers is the garment one comes to see: a belt or a scarf over a robe is an accessory to it."""
 
 from __future__ import annotations
 
@@ -7,17 +7,22 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["ACCESSORY", "cloth_area", "garment_at"]
+__all__ = ["ACCESSORY", "cloth_area", "garment_at", "is_accessory"]
 
 # [m2] of cloth: belts, sashes and cords have less, and the least of dresses, a bodice, has more.
 ACCESSORY = 0.25
 
 
-def garment_at(areas: Sequence[float]) -> int:
-    """The place of the outermost layer that is no accessory, by the cloth [m2] of each layer from the skin outwards;
-    of accessories alone the outermost."""
-    garments = [k for k, area in enumerate(areas) if area >= ACCESSORY]
-    return garments[-1] if garments else len(areas) - 1
+def is_accessory(area: float, told: bool | None) -> bool:
+    """By its cloth [m2], where its outfit does not tell."""
+    return area < ACCESSORY if told is None else told
+
+
+def garment_at(accessories: Sequence[bool]) -> int:
+    """The place of the outermost layer that is no accessory, of layers from the skin outwards; of accessories alone the
+    outermost."""
+    garments = [k for k, accessory in enumerate(accessories) if not accessory]
+    return garments[-1] if garments else len(accessories) - 1
 
 
 def cloth_area(pattern: Any, faces: Any) -> float:

@@ -156,6 +156,7 @@ class _Dressing:
             seconds=clock.laps,
             errors=errors,
             **({"stand": self.outfit.stand.to_dict()} if self.outfit.stand else {}),
+            **({} if self.layer.accessory is None else {"accessory": self.layer.accessory}),
         )
         trail = self._trail(garment)
         if beneath:

@@ -208,7 +208,13 @@ class _Reader:
             lambda: Layer(name, pattern, weave, place, program, edge, weaves, table.seed, self._loom),
         )
         origins = {panel: _metres(at) for panel, at in table.origins.items()}
-        return replace(layer, origin=_metres(table.origin), origins=origins, closing=table.closing)
+        return replace(
+            layer,
+            origin=_metres(table.origin),
+            origins=origins,
+            closing=table.closing,
+            accessory=table.accessory,
+        )
 
     def _begun(self, key: str, start: PoseTable, way: str, program: Program) -> Program:
         """The program from another pose on than is usual for its way of placing."""

@@ -54,7 +54,8 @@ class Layer:
     mirrored pattern's other half as far to the other side);
     coarse [m]: the mesh step it is sewn and posed at (None: COARSE for cloth finer than FINE that is not tied, else its
     own);
-    closing [m]: gaps beneath it are filled that no ball of that radius enters, so that no fold is pinched there."""
+    closing [m]: gaps beneath it are filled that no ball of that radius enters, so that no fold is pinched there;
+    accessory: whether it goes with the garment beneath, which is what one comes to see (None: not told)."""
 
     name: str
     pattern: Pattern
@@ -69,6 +70,7 @@ class Layer:
     closing: float = 0.0
     origin: tuple[float, float] = (0.0, 0.0)
     origins: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    accessory: bool | None = None
 
     def __post_init__(self) -> None:
         if not FILE_NAME.fullmatch(self.name):

@@ -197,6 +197,12 @@ class LayerTable(Table):
         0.0, ge=0, le=0.03, description="[m] gaps beneath are filled that no ball of that radius enters"
     )
     seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")
+    accessory: bool | None = Field(
+        None,
+        strict=True,
+        description="whether it goes with the garment beneath, which is what one comes to see; left out: where it is "
+        "of less than 0.25 m2 of cloth",
+    )
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
     start: PoseTable | None = Field(
         None,
