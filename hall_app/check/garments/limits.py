@@ -44,6 +44,11 @@ class Worn:
         return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, cloth, told)
 
     @property
+    def patience(self) -> float:
+        """[s] of processor time that dressing it may take."""
+        return PATIENCE_WHOLE if self.sewn and not self.half else PATIENCE
+
+    @property
     def on_stand(self) -> bool:
         """Whether it hangs on a stand, else on a wearer."""
         return self.spread or self.way in ON_STAND
@@ -102,8 +107,7 @@ def limits_of(
     found += [Limit("hall_hausdorff_mean"), Limit("hall_hausdorff_p99", deviation)]
     found += [Limit("hall_hausdorff_max")]
     if not worn.beneath:
-        patience = PATIENCE_WHOLE if worn.sewn and not worn.half else PATIENCE
-        found += [Limit("drape_s"), Limit("drape_cpu_s", patience * len(outfit))]
+        found += [Limit("drape_s"), Limit("drape_cpu_s", sum(each.patience for each in outfit))]
     before = f"{worn.name}_" if worn.beneath else ""
     return [Limit(before + limit.name, limit.most, limit.least) for limit in found]
 
