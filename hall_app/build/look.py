@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from hall_app.build.film import Look, Part, Piece
-from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 
 if TYPE_CHECKING:
     from sim_core.body import Mannequin
@@ -51,7 +51,7 @@ class Wardrobe:
         """The layer with which the film begins: the garment one comes to see, whose accessories follow."""
         return garment_at(
             [
-                is_accessory(cloth_area(layer.cloth.vertices, layer.cloth.faces), layer.accessory)
+                (cloth_area(layer.cloth.vertices, layer.cloth.faces), layer.accessory)
                 for layer in self.outfit.layers
             ]
         )

@@ -17,7 +17,7 @@ from hall_app.build.film import Film, filming, stills
 from hall_app.build.look import Wardrobe
 from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
-from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
 from hall_app.content.bakes.steps import Step, beneath_budget, budget, chosen_steps, hall_budget, study_of
@@ -260,9 +260,7 @@ def _record(
     stages: dict[str, float] = {}
     shown = garment_at(
         [
-            is_accessory(
-                cloth_area(garment.pattern, garment.pattern_faces), garment.provenance.get("accessory")
-            )
+            (cloth_area(garment.pattern, garment.pattern_faces), garment.provenance.get("accessory"))
             for garment in garments
         ]
     )

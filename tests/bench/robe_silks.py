@@ -27,7 +27,7 @@ from bench.browser import enter, open_browser  # noqa: E402
 from bench.pictures import DESK, new_page, open_exhibit  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
-from sim_core.garment import Clothed, Garment, load_outfit, opaque, write_glb  # noqa: E402
+from sim_core.garment import Clothed, Garment, Outfit, load_outfit, opaque, write_glb  # noqa: E402
 from sim_core.garment.levels import shown_figure  # noqa: E402
 from sim_core.weave import Weave  # noqa: E402
 
@@ -57,15 +57,14 @@ height = 1.6
 """
 
 
-def wearer_of(robe: Clothed) -> Any:
+def wearer_of(outfit: Outfit, robe: Clothed) -> Any:
     """The figure as far as the robe lets it be seen."""
-    outfit = load_outfit(OUTFIT)
     assert outfit.wearer is not None
     body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
     return shown_figure(*body, *opaque([robe]), worn=outfit.wearer.worn())
 
 
-def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
+def hang(folder: Path, number: int, name: str, worn: tuple[Outfit, Garment]) -> None:
     """An exhibit of the robe cut from a silk, in the silk's own colours."""
     home = folder / "exhibits" / f"silk-{number}"
     (home / "media").mkdir(parents=True)
@@ -73,12 +72,13 @@ def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
     for language in ("zh", "en"):
         (home / f"text.{language}.md").write_text(name, "utf-8")
     shutil.copy(ASSETS / "exhibits" / "mirror" / "media" / "drawing.jpg", home / "media" / "drawing.jpg")
+    outfit, garment = worn
     weave = Weave.load(ASSETS / "weaves" / f"{name}.toml")
     cut = replace(
         garment, weave=weave.to_dict(), weaves={}, dye=None, dyes=tuple(None for _ in garment.panels)
     )
     clothed = Clothed.woven(cut, 1024)
-    figure = wearer_of(clothed)
+    figure = wearer_of(outfit, clothed)
     for precision in ("hall", "close"):
         write_glb(home / "media" / f"{precision}.glb", [clothed], precision=precision, figure=figure)
 
@@ -122,13 +122,13 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures" / "robe-silks.jpg")
     parser.add_argument("--weave", nargs="+", default=SILKS, metavar="NAME", help="of assets/weaves")
     arguments = parser.parse_args()
-    garment = Garment.load(ROBE)
+    worn = load_outfit(OUTFIT), Garment.load(ROBE)
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         content = work / "content"
         shutil.copytree(ASSETS, content, ignore=shutil.ignore_patterns("exhibits"))
         for number, name in enumerate(arguments.weave):
-            hang(content, number, name, garment)
+            hang(content, number, name, worn)
         made = sheet(shoot(content, len(arguments.weave), work), arguments.weave)
     made.save(arguments.out, quality=86)
     print(arguments.out)

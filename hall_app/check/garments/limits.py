@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.steps import PATIENCE, PATIENCE_WHOLE
 
 __all__ = ["Limit", "Worn", "limits_of", "writer"]
@@ -42,11 +42,6 @@ class Worn:
         cloth = cloth_area(garment.pattern, garment.pattern_faces)
         told = garment.provenance.get("accessory")
         return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, cloth, told)
-
-    @property
-    def patience(self) -> float:
-        """[s] of processor time that dressing it may take."""
-        return PATIENCE_WHOLE if self.sewn and not self.half else PATIENCE
 
     @property
     def on_stand(self) -> bool:
@@ -107,7 +102,8 @@ def limits_of(
     found += [Limit("hall_hausdorff_mean"), Limit("hall_hausdorff_p99", deviation)]
     found += [Limit("hall_hausdorff_max")]
     if not worn.beneath:
-        found += [Limit("drape_s"), Limit("drape_cpu_s", sum(each.patience for each in outfit))]
+        patience = PATIENCE_WHOLE if worn.sewn and not worn.half else PATIENCE
+        found += [Limit("drape_s"), Limit("drape_cpu_s", patience * len(outfit))]
     before = f"{worn.name}_" if worn.beneath else ""
     return [Limit(before + limit.name, limit.most, limit.least) for limit in found]
 
@@ -115,7 +111,7 @@ def limits_of(
 def _least_triangles(worn: Worn, outfit: Sequence[Worn]) -> int | None:
     """Triangles asked of a garment on a wearer: of the one that one comes to see, and for their cloth as many of the
     accessories over it, so that none is coarser. None of what lies beneath."""
-    at = garment_at([is_accessory(each.cloth, each.accessory) for each in outfit])
+    at = garment_at([(each.cloth, each.accessory) for each in outfit])
     if worn.on_stand or worn in outfit[:at]:
         return None
     return math.ceil(TRIANGLES * min(1.0, worn.cloth / outfit[at].cloth))

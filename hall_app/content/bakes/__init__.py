@@ -4,7 +4,7 @@ inputs: what an outfit names; key: of inputs; steps: of the meshes; record: dige
 where a bake lies; models: what an exhibit is drawn with; accessories: which layer one comes to see.
 """
 
-from hall_app.content.bakes.accessories import cloth_area, garment_at, is_accessory
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.inputs import outfit_files, outfit_problems, scan_files
 from hall_app.content.bakes.key import BAKE_VERSION, KEY_DIGITS, bake_key
 from hall_app.content.bakes.models import ExhibitModels, models_of
@@ -39,7 +39,6 @@ __all__ = [
     "cloth_area",
     "data_bake",
     "garment_at",
-    "is_accessory",
     "key_now",
     "layer_files",
     "models_of",

@@ -7,22 +7,22 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["ACCESSORY", "cloth_area", "garment_at", "is_accessory"]
+__all__ = ["ACCESSORY", "cloth_area", "garment_at"]
 
 # [m2] of cloth: belts, sashes and cords have less, and the least of dresses, a bodice, has more.
 ACCESSORY = 0.25
 
 
-def is_accessory(area: float, told: bool | None) -> bool:
-    """By its cloth [m2], where its outfit does not tell."""
-    return area < ACCESSORY if told is None else told
+def garment_at(layers: Sequence[tuple[float, bool | None]]) -> int:
+    """The place of the outermost layer that is no accessory; of accessories alone the outermost.
 
-
-def garment_at(accessories: Sequence[bool]) -> int:
-    """The place of the outermost layer that is no accessory, of layers from the skin outwards; of accessories alone the
-    outermost."""
-    garments = [k for k, accessory in enumerate(accessories) if not accessory]
-    return garments[-1] if garments else len(accessories) - 1
+    layers: from the skin outwards, the cloth [m2] of each, and whether its outfit calls it an accessory, None where it
+    does not say and the cloth decides.
+    """
+    garments = [
+        k for k, (area, told) in enumerate(layers) if not (area < ACCESSORY if told is None else told)
+    ]
+    return garments[-1] if garments else len(layers) - 1
 
 
 def cloth_area(pattern: Any, faces: Any) -> float:

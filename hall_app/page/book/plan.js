@@ -45,10 +45,11 @@ function listen(told) {
     const found = answer?.ok ? await answer.json() : null;
     const later = found && found.reached !== null && (await ask(window.location.href).catch(() => null));
     if (!later?.ok) return void setTimeout(again, 1500);
-    const page = new DOMParser().parseFromString(await later.text(), "text/html").getElementById("reached");
-    told.replaceChildren(...page.childNodes);
-    told.dataset.state = page.dataset.state;
-    if (page.dataset.ask) setTimeout(again, 1500); // changed once more meanwhile
+    const page = new DOMParser().parseFromString(await later.text(), "text/html");
+    const now = page.getElementById("reached");
+    told.replaceChildren(...now.childNodes);
+    told.dataset.state = now.dataset.state;
+    if (now.dataset.ask) setTimeout(again, 1500); // changed once more meanwhile
   };
   setTimeout(again, 1500);
 }

@@ -89,14 +89,21 @@ class Places:
     def _reached(self, asking: Asking, key: str) -> str:
         """One live region whatever is known, so that the page's script can put in what became of the walk."""
         word, (reached, wrong) = asking.word, self._standing(key)
-        state, more, told = "yes", "", word("每件展品都能走到。", "Every exhibit can be reached on foot.")
-        if reached is None and not wrong:
-            at, look = f"collection/{key}/place", word("再看一次", "Look again")
-            state, more = "wait", f' data-ask="/api/office/{at}"'
+        if wrong:
+            return _found("no", listed_problems(asking, wrong))
+        if reached is None:
             told = word("正在步行检查全馆通路…", "Walking through the hall to see that all is reached …")
-            told += f' <a href="{asking.address(f"/office/{at}")}">{look}</a>'
-        inside = listed_problems(asking, wrong) or f'<p class="done">{told}</p>'
-        return f'<div id="reached" role="status" data-state="{"no" if wrong else state}"{more}>{inside}</div>'
+            at, look = f"collection/{key}/place", word("再看一次", "Look again")
+            again = f'<a href="{asking.address(f"/office/{at}")}">{look}</a>'
+            return _found("wait", f'<p class="done">{told} {again}</p>', f' data-ask="/api/office/{at}"')
+        return _found(
+            "yes",
+            f'<p class="done">{word("每件展品都能走到。", "Every exhibit can be reached on foot.")}</p>',
+        )
+
+
+def _found(state: str, told: str, more: str = "") -> str:
+    return f'<div id="reached" role="status" data-state="{state}"{more}>{told}</div>'
 
 
 def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -> str:
