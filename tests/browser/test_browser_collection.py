@@ -1,6 +1,7 @@
 """A curator's day in a browser: an exhibit of his own, from files to the hall and back; pages clean and whole."""
 
 import json
+import math
 import urllib.request
 
 import pytest
@@ -172,15 +173,31 @@ def test_a_curator_s_day(office_hall, chromium, tmp_path):
 
 
 def drag(page) -> None:
-    """The exhibit on the plan, four metres to the left of where a new one stands."""
-    own, before = page.locator("#own").bounding_box(), float(page.evaluate(PLACED))
+    """The exhibit on the plan, four metres to the left of where a new one stands; then its arrow, all round it."""
+    before = float(page.evaluate(PLACED))
     scale = page.evaluate("document.getElementById('plan').getScreenCTM().a")
-    x, y = own["x"] + own["width"] / 2, own["y"] + own["height"] / 3
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x - (before + 2.5) * scale, y, steps=8)
-    page.mouse.up()
+
+    def from_middle(right: float, down: float) -> tuple[float, float]:
+        at = page.evaluate("(({e, f}) => [e, f])(document.getElementById('own').getScreenCTM())")
+        return at[0] + right * scale, at[1] + down * scale
+
+    def drawn(start: tuple[float, float], end: tuple[float, float]) -> None:
+        page.mouse.move(*start)
+        page.mouse.down()
+        page.mouse.move(*end, steps=8)
+        page.mouse.up()
+
+    drawn(from_middle(0, 0), from_middle(-before - 2.5, 0))
     assert abs(float(page.evaluate(PLACED)) + 2.5) < 0.2
+    there, front = page.evaluate(PLACED), 0.75  # [m] from the middle of the box to its arrow
+    ways = {(1, 0): "90", (0, -1): "180", (-1, 0): "270", (-1, 1): "315", (0, 1): "0"}
+    at = (0.0, 1.0)
+    for way, facing in ways.items():
+        drawn(from_middle(front * at[0], front * at[1]), from_middle(3 * way[0], 3 * way[1]))
+        assert page.evaluate("document.getElementById('place-place.facing').value") == facing
+        length = math.hypot(*way)
+        at = (way[0] / length, way[1] / length)
+    assert page.evaluate(PLACED) == there, "what is turned stays where it is"
 
 
 @pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))

@@ -1,10 +1,12 @@
-// The plan in the office: the exhibit is moved on the drawing, and the numbers beside it say where it is.
+// The plan in the office: the exhibit is moved and turned on the drawing, and the numbers beside it say where it is.
 
 const plan = document.getElementById("plan");
 const own = document.getElementById("own");
+const turn = document.getElementById("turn");
 const field = (name) => document.getElementById(`place-place.${name}`);
 const [x, z, facing] = ["x", "z", "facing"].map(field);
 const STEP = 0.05; // [m]
+const ANGLE = 5; // [degrees]
 
 const number = (input) => Number.parseFloat(input.value) || 0;
 const rounded = (value) => String(Math.round(value / STEP) * STEP).replace(/(\.\d\d)\d+$/, "$1");
@@ -19,22 +21,33 @@ function spot(event) {
   return [at.x, at.y];
 }
 
-function drag() {
+/** While `grip` is held, `move` gets the way from where it was taken to the exhibit, and where the pointer is [m]. */
+function drag(grip, move) {
   let held = null; // from the pointer to the exhibit's middle [m]
-  own.addEventListener("pointerdown", (event) => {
+  grip.addEventListener("pointerdown", (event) => {
     const [px, pz] = spot(event);
     held = [number(x) - px, number(z) - pz];
-    own.setPointerCapture(event.pointerId);
+    grip.setPointerCapture(event.pointerId);
     event.preventDefault();
+    event.stopPropagation();
   });
-  own.addEventListener("pointermove", (event) => {
+  grip.addEventListener("pointermove", (event) => {
     if (!held) return;
-    const [px, pz] = spot(event);
-    x.value = rounded(px + held[0]);
-    z.value = rounded(pz + held[1]);
+    move(held, spot(event));
     draw();
   });
-  for (const end of ["pointerup", "pointercancel"]) own.addEventListener(end, () => (held = null));
+  for (const end of ["pointerup", "pointercancel"]) grip.addEventListener(end, () => (held = null));
+}
+
+function shift([dx, dz], [px, pz]) {
+  x.value = rounded(px + dx);
+  z.value = rounded(pz + dz);
+}
+
+/** The front follows the pointer about the exhibit's middle, where it stays. */
+function face(_, [px, pz]) {
+  const angle = (Math.atan2(px - number(x), pz - number(z)) * 180) / Math.PI;
+  facing.value = String((Math.round(angle / ANGLE) * ANGLE + 360) % 360);
 }
 
 /** Until the walk through the hall is done; then what came of it is put in, and what is written beside it stays. */
@@ -57,7 +70,8 @@ function listen(told) {
 if (plan && own && x && z && facing) {
   for (const input of [x, z, facing]) input.addEventListener("input", draw);
   own.classList.add("is-free");
-  drag();
+  drag(own, shift);
+  drag(turn, face);
 }
 const told = document.getElementById("reached");
 if (told?.dataset.ask) listen(told);

@@ -9,7 +9,7 @@ from typing import Any
 
 from hall_app.content.floor.footprints import Footprint, body_footprint, plan_footprints
 from hall_app.content.floor.placement import STANDING
-from hall_app.content.folder import Content
+from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 from hall_app.web.platform.counter import Asking, Field, Shown, form
 from hall_app.web.platform.office.collection.desk import TOML, Desk, listed_problems, refusal
@@ -19,6 +19,7 @@ from hall_app.web.platform.office.table import office_page
 __all__ = ["Places"]
 
 _MARGIN = 0.6  # [m] about the plan
+_GRIP = 0.8  # [m], radius of what takes hold of the exhibit and of its arrow: 20 px wide on a phone
 
 
 class Places:
@@ -68,13 +69,13 @@ class Places:
             hidden={"tag": desk.drafts.tag(key, TOML)},
         )  # fmt: skip
         told = word(
-            "拖动红色的展品，或改写数字；单位为米，平面图上方是 −z。",
-            "Drag the red exhibit, or write the numbers: metres, the drawing's top is −z.",
+            "拖动红色的展品，拖动箭头令它转向，或改写数字；单位为米，平面图上方是 −z。",
+            "Drag the red exhibit, turn it by its arrow, or write the numbers: metres, the drawing's top is −z.",
         )
         back = f'<a href="{asking.address(f"/office/collection/{key}")}">{word("回到展品", "Back to the exhibit")}</a>'
         inside = f"""{refusal(asking, "place")}<div class="planned">
 <figure>{drawing(content, key, table, asking)}<figcaption class="quiet">{told}</figcaption></figure>
-<div>{self._reached(asking, key)}{sent}</div></div><p class="doors">{back}</p>"""
+<div>{self._reached(asking, key)}{sent}</div>{_neighbours(asking, content, key)}</div><p class="doors">{back}</p>"""
         title = f"{desk.title(key, asking.lang)} · {word('布置', 'Place')}"
         return office_page(asking, title, inside, path=f"collection/{key}/place", script="book/plan.js")
 
@@ -102,6 +103,21 @@ class Places:
         )
 
 
+def _others(content: Content, key: str) -> Iterable[tuple[int, Exhibit]]:
+    """The exhibits about it, numbered as the drawing and the list beneath it have them."""
+    return enumerate((one for one in content.exhibits if one.id != key), start=1)
+
+
+def _neighbours(asking: Asking, content: Content, key: str) -> str:
+    """What the numbers on the drawing are, each a way to where that one is placed."""
+    rows = "".join(
+        f'<li value="{number}"><a href="{asking.address(f"/office/collection/{one.id}/place")}">'
+        f"{escape(getattr(one.file.title, asking.lang))}</a></li>"
+        for number, one in _others(content, key)
+    )
+    return f'<ol class="neighbours">{rows}</ol>' if rows else ""
+
+
 def _found(state: str, told: str, more: str = "") -> str:
     return f'<div id="reached" role="status" data-state="{state}"{more}>{told}</div>'
 
@@ -114,8 +130,8 @@ def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -
     box = f"{low[0]:.2f} {low[1]:.2f} {size[0]:.2f} {size[1]:.2f}"
     others = "".join(
         _shape(body_footprint(one.id, one.file), "other", getattr(one.file.title, asking.lang))
-        for one in content.exhibits
-        if one.id != key
+        + f'<text x="{one.file.place.x:g}" y="{one.file.place.z:g}">{number}</text>'
+        for number, one in _others(content, key)
     )
     solids = "".join(_shape(one, one.kind, one.id) for one in plan_footprints(content.plan))
     start = content.hall.start
@@ -125,7 +141,7 @@ def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -
 
 
 def _own(table: dict[str, Any]) -> str:
-    """The exhibit itself, in its own measures about its place, with its front marked."""
+    """The exhibit itself in its own measures about its place, its front marked; about both what a finger takes."""
     place, body = _table(table.get("place")), _table(table.get("body"))
     x, z, facing = (_number(place.get(name)) for name in ("x", "z", "facing"))
     size = body.get("size")
@@ -136,9 +152,11 @@ def _own(table: dict[str, Any]) -> str:
     else:
         front = _number(body.get("radius")) or 0.4
         shape = f'<circle r="{front:g}"/>'
-    arrow = f'<path d="M -0.16 {front + 0.08:g} L 0.16 {front + 0.08:g} L 0 {front + 0.34:g} Z"/>'
+    arrow = f'<path d="M -0.26 {front + 0.08:g} L 0.26 {front + 0.08:g} L 0 {front + 0.56:g} Z"/>'
+    turn = f'<g id="turn"><circle class="grip" cy="{front + _GRIP:g}" r="{_GRIP:g}"/>{arrow}</g>'
     return (
-        f'<g class="own" id="own" transform="translate({x:g} {z:g}) rotate({-facing:g})">{shape}{arrow}</g>'
+        f'<g class="own" id="own" transform="translate({x:g} {z:g}) rotate({-facing:g})">'
+        f'<circle class="grip" r="{_GRIP:g}"/>{shape}{turn}</g>'
     )
 
 
