@@ -111,6 +111,13 @@ def test_a_picture_on_its_side_stands_upright(tmp_path: Path):
         assert small.size == (EDGE // 2, EDGE)
 
 
+def test_grey_of_sixteen_bits_stays_grey(tmp_path: Path):
+    picture, thumbnails = tmp_path / "scan.png", Thumbnails(tmp_path / "kept")
+    Image.new("I;16", (90, 90), 0x4040).save(picture)
+    with Image.open(thumbnails.file(picture)) as small:
+        assert abs(small.convert("L").getpixel((45, 45)) - 0x40) <= 2
+
+
 @pytest.mark.parametrize("data", [b"", b"no picture", b"\x89PNG\r\n\x1a\n cut off"])
 def test_what_is_no_picture_is_handed_on_as_it_is(tmp_path: Path, data: bytes):
     picture = tmp_path / "odd.png"

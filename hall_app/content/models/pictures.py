@@ -5,8 +5,12 @@ from __future__ import annotations
 import io
 import warnings
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-__all__ = ["LARGEST", "PictureError", "picture_fault", "picture_size"]
+if TYPE_CHECKING:
+    from PIL import Image
+
+__all__ = ["LARGEST", "PictureError", "in_eight_bits", "picture_fault", "picture_size"]
 
 LARGEST = 8192  # [pixels] a side; beyond it graphics cards and Pillow's own guard refuse
 FORMATS = {".jpg": "JPEG", ".jpeg": "JPEG", ".png": "PNG", ".webp": "WEBP", ".svg": "SVG"}
@@ -20,6 +24,16 @@ class PictureError(ValueError):
 def picture_size(data: bytes) -> tuple[int, int]:
     """(width, height) [pixels] as the picture's head states it. Raises PictureError."""
     return _head(data)[1]
+
+
+def in_eight_bits(picture: Image.Image) -> Image.Image:
+    """Grey of sixteen bits, as archives scan it, in eight: Pillow shows all that is not nearly black as white."""
+    if not picture.mode.startswith("I"):
+        return picture
+    _, most = picture.getextrema()
+    if not isinstance(most, int | float) or most <= 255:
+        return picture
+    return picture.point(lambda value: value * (1.0 / 257.0) + 0.0)
 
 
 def _head(data: bytes) -> tuple[str, tuple[int, int]]:

@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from hall_app.content.models.glb import GlbError, read_glb
+from hall_app.content.models.pictures import in_eight_bits
 from hall_app.house.beside import beside
 from hall_app.house.drafts.drawing import redrawn
 from hall_app.house.people import PeopleError
@@ -47,6 +48,8 @@ USES: Mapping[str, tuple[str, ...]] = {
     "sound": ("sound", "film"),
 }
 _WITHIN = 90.0  # [s] that film or sound may take to be read, and encoded where it has to be
+_AT_ONCE = 200_000  # [bytes] of a drawing that is written anew within a second
+_DRAWN_WITHIN = 60.0  # [s] that a larger one may take
 _READING = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF")
 _ARCHIVES = (
@@ -87,8 +90,7 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     data = file.read(LARGEST[limited] + 1)
     told = ""
     if ending == ".svg":
-        data, told = redrawn(shown, data, _picture)
-        _check_size(shown, limited, len(data))  # pictures within may have grown as they were drawn anew
+        data, told = _drawing(shown, data)
     elif kind == "picture":
         data, ending, told = _picture(shown, data)
     elif ending == ".glb":
@@ -171,7 +173,7 @@ def _in_srgb(source):
     from PIL import Image, ImageCms
 
     mode = "RGBA" if source.mode in ("RGBA", "LA", "PA") or "transparency" in source.info else "RGB"
-    profile, picture = source.info.get("icc_profile"), source.convert(mode)
+    profile, picture = source.info.get("icc_profile"), in_eight_bits(source).convert(mode)
     if profile and source.mode in ("RGB", "RGBA"):
         try:
             own = ImageCms.ImageCmsProfile(io.BytesIO(profile))
@@ -197,6 +199,30 @@ def _model(shown: str, data: bytes) -> str:
             raise PeopleError("file-broken", name=shown, why=str(error)) from None
     size = " × ".join(f"{high - low:.2f}" for low, high in zip(info.low, info.high, strict=True))
     return f"{info.triangles} △ · {size} m · {len(data) / MB:.2f} MB"
+
+
+def _drawing(shown: str, data: bytes) -> tuple[bytes, str]:
+    """Written anew; a large one where it holds nobody up. Raises PeopleError."""
+    if len(data) <= _AT_ONCE:
+        return redrawn(shown, data, _picture, LARGEST["drawing"])
+    if not _READING.acquire(blocking=False):
+        raise PeopleError("too-often", seconds=10)
+    try:
+        found = beside(_redrawn, shown, data, within=_DRAWN_WITHIN)
+    finally:
+        _READING.release()
+    if found is None:
+        raise PeopleError("file-svg-drawn", name=shown)
+    if isinstance(found, Refused):
+        raise PeopleError(found.key, **found.facts)
+    return found
+
+
+def _redrawn(shown: str, data: bytes) -> tuple[bytes, str] | Refused:
+    try:
+        return redrawn(shown, data, _picture, LARGEST["drawing"])
+    except PeopleError as error:
+        return Refused(error.key, error.figures)
 
 
 def _recording(shown: str, data: bytes, ending: str, kind: str) -> tuple[bytes, str, str]:

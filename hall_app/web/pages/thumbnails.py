@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from hall_app.content.files import digest
-from hall_app.content.models.pictures import LARGEST
+from hall_app.content.models.pictures import LARGEST, in_eight_bits
 
 __all__ = ["EDGE", "Thumbnails"]
 
@@ -91,7 +91,7 @@ def _make(picture: Path, kept: Path, size: tuple[int, int]) -> None:
     try:
         with Image.open(picture) as opened:
             opened.draft("RGB", (2 * EDGE, 2 * EDGE))  # a JPEG is decoded no larger than needed
-            upright = ImageOps.exif_transpose(opened)
+            upright = in_eight_bits(ImageOps.exif_transpose(opened))
             clear = "A" in upright.getbands() or "transparency" in upright.info
             small = upright.convert("RGBA" if clear else "RGB").resize(size, Image.Resampling.LANCZOS)
             small.save(part, "WEBP", quality=_QUALITY, method=4)

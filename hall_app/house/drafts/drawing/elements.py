@@ -12,6 +12,8 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import NoReturn
+from urllib.parse import unquote
 from xml.etree import ElementTree
 from xml.parsers.expat import ExpatError, ParserCreate
 
@@ -19,7 +21,9 @@ import tinycss2
 
 from hall_app.content.models import PictureError, picture_size
 from hall_app.house.drafts.drawing.cost import MOST_DEEP, draws_too_much
+from hall_app.house.drafts.drawing.dashes import TEXTS, without_countless_dashes
 from hall_app.house.drafts.drawing.styles import (
+    LONGEST_VALUE,
     PROPERTIES,
     TooMuch,
     clean,
@@ -41,7 +45,6 @@ _DRAWN = frozenset(
     f"svg g a defs symbol switch title desc {_SHAPES} tspan textPath linearGradient radialGradient stop pattern "
     "clipPath mask marker".split()
 )
-_TEXTS = frozenset(("text", "tspan", "textPath"))
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]*")
 _UNUSED = (
     "on",
@@ -54,7 +57,8 @@ _UNUSED = (
 )  # how names begin that draw nothing here
 _PICTURE = re.compile(r"data:image/(?:png|jpe?g|webp)\s*(?:;[\w=-]+\s*)*;\s*base64\s*,", re.IGNORECASE)
 _TYPES = {".png": "png", ".jpg": "jpeg", ".webp": "webp"}
-_XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
+_XML = "{http://www.w3.org/XML/1998/namespace}"
+_LANGUAGE = re.compile(r"[A-Za-z0-9-]{0,35}")  # by which a browser chooses how Han characters are written
 
 _DECLARED = re.compile(rb"^\s*<\?xml[^>]*?encoding\s*=\s*[\"']([\w-]+)[\"'][^>]*\?>")
 _DECLARATION = re.compile(r"^\s*<\?xml[^>]*\?>")
@@ -68,7 +72,7 @@ _ENCODINGS = {
     "shift_jis": "cp932",
 }
 
-_WHOLE = "stroke-dasharray:none!important"
+_READ = frozenset(("clip-path", "mask", "stroke-dasharray"))  # as a style says them, whatever they look like
 _LONGEST_SPACE = 200  # characters of a namespace's name, which every name of the tree repeats
 _MOST_WRITTEN = 60_000  # elements of the file
 _MOST_ATTRIBUTES = 300_000
@@ -79,13 +83,14 @@ _MOST_TOLD = 8
 
 
 def redrawn(
-    name: str, data: bytes, picture: Callable[[str, bytes], tuple[bytes, str, str]]
+    name: str, data: bytes, picture: Callable[[str, bytes], tuple[bytes, str, str]], most: int
 ) -> tuple[bytes, str]:
-    """(SVG, what is known of it). name: for messages; picture: draws an embedded picture anew, as (bytes, ending, …).
+    """(SVG, what is known of it). name: for messages; picture: draws an embedded picture anew, as (bytes, ending, …);
+    most: bytes it may have once pictures are drawn anew.
 
     Raises PeopleError.
     """
-    cleaning = _Cleaning(name, picture)
+    cleaning = _Cleaning(name, picture, most)
     try:
         root = cleaning.kept(_tree(name, data), "svg")
         told, sheet = told_by_sheets(cleaning.sheets, root, cleaning.left)
@@ -94,20 +99,27 @@ def redrawn(
             one: [*weighty(one.attrib.items()), *told.get(one, ()), *cleaning.said.get(one, ())]
             for one in root.iter()
         }
-        _without_dashed_letters(root, said)
+        without_countless_dashes(root, said, cleaning.left)
         if draws_too_much(root, said):
             raise TooMuch
+    except PeopleError:
+        raise
     except (TooMuch, RecursionError):  # what nests in styles is followed as it nests
         raise PeopleError("file-svg-drawn", name=name) from None
+    except ValueError as error:  # numbers of thousands of figures, which tinycss2 cannot read
+        raise PeopleError("file-broken", name=name, why=str(error)[:120]) from None
     if sheet:
         root.insert(0, ElementTree.Element("style"))
         root[0].text = sheet
     root.set("xmlns", _SVG)
     known = " × ".join(_measures(root))
     if cleaning.left:
-        most = sorted(cleaning.left.most_common(_MOST_TOLD))
-        known += " · − " + ", ".join(f"{key} {count}" for key, count in most)
-    return ElementTree.tostring(root, "utf-8", xml_declaration=True), known.removeprefix(" · ")
+        often = sorted(cleaning.left.most_common(_MOST_TOLD))
+        known += " · − " + ", ".join(f"{key} {count}" for key, count in often)
+    data = ElementTree.tostring(root, "utf-8", xml_declaration=True)
+    if len(data) > most:
+        cleaning.too_large()
+    return data, known.removeprefix(" · ")
 
 
 def _tree(name: str, data: bytes) -> ElementTree.Element:
@@ -145,8 +157,12 @@ def _look_through(name: str, data: bytes) -> None:
     depth = count = given = 0
     entities: list[str] = []
 
-    def refuse(*_: object) -> None:
+    def refuse(*_: object) -> NoReturn:
         raise PeopleError("file-svg", name=name)
+
+    def attribute(_: str, key: str, *__: object) -> None:
+        if not key.startswith("xmlns"):  # old programs declare so what their names begin with
+            refuse()
 
     def entity(called: str, parameter: bool, value: str | None, *_: object) -> None:
         entities.append(called)
@@ -175,7 +191,7 @@ def _look_through(name: str, data: bytes) -> None:
         depth -= 1
 
     parser = ParserCreate()
-    parser.EntityDeclHandler, parser.AttlistDeclHandler = entity, refuse
+    parser.EntityDeclHandler, parser.AttlistDeclHandler = entity, attribute
     parser.StartElementHandler, parser.EndElementHandler = begin, end
     parser.Parse(data, True)
 
@@ -186,42 +202,47 @@ class _Cleaning:
 
     name: str
     picture: Callable[[str, bytes], tuple[bytes, str, str]]
+    most: int
     left: Counter[str] = field(default_factory=Counter)
     sheets: list[tuple[str, str]] = field(default_factory=list)
     said: dict[ElementTree.Element, list[tuple[str, str]]] = field(default_factory=dict)
+    values: dict[tuple[str, str], str | None] = field(default_factory=dict)
     styles: dict[str, tuple[str, list[tuple[str, str]], Counter[str]]] = field(default_factory=dict)
     styled: int = 0
     pictures: dict[str, str | None] = field(default_factory=dict)
     pixels: int = 0
+    embedded: int = 0  # characters of pictures, each as often as it is written
 
     def kept(self, source: ElementTree.Element, tag: str) -> ElementTree.Element:
         """The element with what draws of it under that name, its names without a namespace."""
         made = ElementTree.Element(tag)
         for name, value in source.attrib.items():
             self._attribute(made, name, value)
-        made.text = source.text
+        words = [source.text or ""]  # since the last child that was kept
         for child in source:
             local = _local(child.tag)
             if local in _DRAWN and (local != "image" or self._embedded(child)):
+                _speak(made, words)
                 made.append(self.kept(child, local))
-                made[-1].tail = child.tail
-                continue
-            if local == "style" and child.get("type", "").strip().lower() in ("", "text/css"):
+                words = []
+            elif local == "style" and child.get("type", "").strip().lower() in ("", "text/css"):
                 self.sheets.append((child.get("media", ""), "".join(child.itertext())))
             elif local not in ("", "metadata"):  # what an editor notes for itself is no loss
                 note(self.left, local)
-            if child.tail and len(made):
-                made[-1].tail = (made[-1].tail or "") + child.tail
-            elif child.tail:
-                made.text = (made.text or "") + child.tail
+            words.append(child.tail or "")
+        _speak(made, words)
         return made
 
     def _attribute(self, made: ElementTree.Element, name: str, value: str) -> None:
         space, _, local = name.rpartition("}")
-        if name == _XML_SPACE:
+        if name == _XML + "space" or (name == _XML + "lang" and _LANGUAGE.fullmatch(value)):
             made.set(name, value)
         elif local == "href" and space in ("", "{" + _XLINK):
-            kept = value.strip() if made.tag == "image" else (named := target(value)) and f"#{named}"
+            kept = (
+                value.strip()
+                if made.tag == "image"
+                else (named := target(value, linked=True)) and f"#{named}"
+            )
             if kept is None:
                 note(self.left, "href")
             elif not space or "href" not in made.attrib:
@@ -234,10 +255,22 @@ class _Cleaning:
             made.set(local, value)
         elif local == "style":
             self._style(made, value)
-        elif (kept := _value(local, value)) is None:
+        elif (kept := self._value(local, value)) is None:
             note(self.left, local)
         else:
             made.set(local, kept)
+
+    def _value(self, name: str, value: str) -> str | None:
+        """What an attribute may say; None: it asks for something beyond the file, or hides what it asks for."""
+        read = name in PROPERTIES and (name in _READ or not plain(value))
+        if not read:
+            return value if plain(value) else None
+        if len(value) > LONGEST_VALUE:
+            return None
+        if (name, value) not in self.values:
+            tokens = tinycss2.parse_component_value_list(value, skip_comments=True)
+            self.values[name, value] = clean(name, tokens)
+        return self.values[name, value]
 
     def _style(self, made: ElementTree.Element, value: str) -> None:
         """Programs say the same of many elements; it is read once."""
@@ -258,6 +291,9 @@ class _Cleaning:
             made.set("style", style)
             self.said[made] = said
 
+    def too_large(self) -> NoReturn:
+        raise PeopleError("file-size", name=self.name, kind="drawing", most=self.most // 1_000_000)
+
     def _embedded(self, element: ElementTree.Element) -> bool:
         """Whether the picture lies in the file, and can be drawn; it is drawn anew then."""
         keys = [name for name in element.attrib if name.rpartition("}")[2] == "href"]
@@ -266,6 +302,9 @@ class _Cleaning:
             self.pictures[given] = self._drawn_anew(given)
         if (anew := self.pictures[given]) is None:
             return False
+        self.embedded += len(anew)
+        if self.embedded > self.most:
+            self.too_large()
         for name in keys:
             del element.attrib[name]
         element.set("href", anew)
@@ -276,7 +315,7 @@ class _Cleaning:
         if head is None:
             return None
         try:
-            data = base64.b64decode(given[head.end() :])
+            data = base64.b64decode(unquote(given[head.end() :]))
             width, height = picture_size(data)
             self.pixels += width * height
             if self.pixels > _MOST_PIXELS or len(self.pictures) >= _MOST_PICTURES:
@@ -291,12 +330,13 @@ class _Cleaning:
         return f"data:image/{_TYPES[ending]};base64,{base64.b64encode(data).decode()}"
 
 
-def _value(name: str, value: str) -> str | None:
-    """What an attribute may say; None: it asks for something beyond the file, or hides what it asks for."""
-    read = name in PROPERTIES and (name in ("clip-path", "mask", "stroke-dasharray") or not plain(value))
-    if not read:
-        return value if plain(value) else None
-    return clean(name, tinycss2.parse_component_value_list(value, skip_comments=True))
+def _speak(made: ElementTree.Element, words: list[str]) -> None:
+    """What is said after the last of its children, or before there is any."""
+    said = "".join(words) or None
+    if len(made):
+        made[-1].tail = said
+    else:
+        made.text = said
 
 
 def _without_links(root: ElementTree.Element) -> None:
@@ -304,33 +344,9 @@ def _without_links(root: ElementTree.Element) -> None:
     for one in root.iter():
         for child in one:
             if child.tag == "a":
-                child.tag = "tspan" if one.tag in _TEXTS else "g"
+                child.tag = "tspan" if one.tag in TEXTS else "g"
                 for name in ("target", "download", "type", "href"):
                     child.attrib.pop(name, None)
-
-
-def _without_dashed_letters(
-    root: ElementTree.Element, said: dict[ElementTree.Element, list[tuple[str, str]]]
-) -> None:
-    """Nobody knows how long the outlines of letters are: they have none in dashes, where any reach them."""
-
-    def visit(element: ElementTree.Element, dashed: bool) -> None:
-        dashed = dashed or any(key == "stroke-dasharray" and value != "none" for key, value in said[element])
-        if element.tag == "use" and dashed:
-            reached.append(element)
-        if element.tag in _TEXTS:
-            texts.append((element, dashed))
-        for child in element:
-            visit(child, dashed)
-
-    reached: list[ElementTree.Element] = []
-    texts: list[tuple[ElementTree.Element, bool]] = []
-    visit(root, False)
-    for element, dashed in texts:
-        if dashed or reached:
-            before = element.get("style", "")
-            if not before.endswith(_WHOLE):
-                element.set("style", f"{before};{_WHOLE}".lstrip(";"))
 
 
 def _local(tag: object) -> str:

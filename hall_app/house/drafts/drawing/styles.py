@@ -18,6 +18,7 @@ import tinycss2
 from tinycss2.ast import FunctionBlock, URLToken
 
 __all__ = [
+    "LONGEST_VALUE",
     "PROPERTIES",
     "REFERENCE",
     "TooMuch",
@@ -32,7 +33,7 @@ __all__ = [
 ]
 
 Token = Any  # a node of tinycss2: its `type` tells what it has
-REFERENCE = re.compile(r"url\(#([^)]+)\)")  # as they are written here
+REFERENCE = re.compile(r"url\(#([^()]+)\)")  # as they are written here
 
 PROPERTIES = frozenset(
     "alignment-baseline background background-color baseline-shift clip-path clip-rule color color-interpolation "
@@ -51,8 +52,11 @@ _FUNCTIONS = frozenset(
     "calc circle clamp color color-mix ellipse hsl hsla hwb inset lab lch light-dark matrix max min oklab oklch "
     "polygon rgb rgba rotate scale scalex scaley skewx skewy translate translatex translatey".split()
 )
-_CALLED = re.compile(r"([\w-]*)\(")
+_TOKENS = frozenset(
+    "comment dimension hash ident literal number percentage string unicode-range whitespace".split()
+)
 _NAMED = re.compile(r"#[^\s'\"()\\%<>;{}]+")
+_LINKED = re.compile(r"#[^\s'\"\\%<>;{}]+")  # by an attribute of its own, which nothing follows
 _SCREENS = frozenset(("", "all", "screen", "only screen"))
 # Properties that no child takes from its parent: asked for so, each child would draw its parent's target once more.
 _ALONE = frozenset(("clip-path", "mask"))
@@ -62,8 +66,10 @@ _DATA = re.compile(r"url\(\s*+[\"']?+data:[^)\"']*+", re.IGNORECASE)
 _LEGAL = re.compile(r"[\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]*")  # what XML may hold
 _KEY = re.compile(r"[A-Za-z][A-Za-z-]{0,30}")
 _MOST_KEYS = 200  # that are told of
-_LONGEST_VALUE = 2_000
-_WEIGHTY = frozenset("stroke-dasharray opacity mix-blend-mode isolation".split())
+LONGEST_VALUE = 2_000
+_WEIGHTY = frozenset("stroke-dasharray opacity mix-blend-mode isolation transform vector-effect".split())
+# What SVG 2 lets styles say of a shape: left out, since what is drawn is weighed by the attributes.
+_OF_SHAPES = frozenset("cx cy d height r rotate rx ry scale translate width x y".split())
 _MOST_READ = 300_000  # characters of all sheets
 _MOST_WEIGHED = 500_000  # parts of selectors, each for each element
 _MOST_TOLD = 2_000_000  # characters of all classes
@@ -100,10 +106,13 @@ class Selected:
     stressed: Mapping[str, str]  # !important
 
 
-def target(reference: str) -> str | None:
-    """The name that "#name" refers to; None where it leads out of the file, or browsers would read it otherwise."""
-    name = unquote(reference.strip())
-    return name[1:] if _NAMED.fullmatch(name) and _LEGAL.fullmatch(name) else None
+def target(reference: str, *, linked: bool = False) -> str | None:
+    """The name that "#name" refers to; None where it leads out of the file, or browsers would read it otherwise.
+
+    linked: it stands alone, as href has it, where brackets end nothing.
+    """
+    name, names = unquote(reference.strip()), _LINKED if linked else _NAMED
+    return name[1:] if names.fullmatch(name) and _LEGAL.fullmatch(name) else None
 
 
 def note(left: Counter[str], key: str) -> None:
@@ -116,7 +125,7 @@ def plain(value: str) -> bool:
     """Whether an attribute's value asks for nothing, seen without reading it as CSS."""
     if "\\" in value or "/*" in value:
         return False
-    return "(" not in value or all(name.lower() in _FUNCTIONS for name in _CALLED.findall(value))
+    return all(_called(before).lower() in _FUNCTIONS for before in value.split("(")[:-1])
 
 
 def clean(name: str, tokens: Iterable[Token]) -> str | None:
@@ -125,7 +134,7 @@ def clean(name: str, tokens: Iterable[Token]) -> str | None:
     if None in kept:
         return None
     value = tinycss2.serialize(kept).strip()
-    if len(value) > _LONGEST_VALUE or not _LEGAL.fullmatch(value):
+    if len(value) > LONGEST_VALUE or not _LEGAL.fullmatch(value):
         return None
     if name.startswith("background") and "url(" in value:  # nothing that draws; a plain colour is seen
         return None
@@ -141,7 +150,8 @@ def declared(style: str | Sequence[Token], left: Counter[str]) -> tuple[dict[str
         if one.type != "declaration":
             note(left, "style")
         elif one.lower_name not in PROPERTIES:
-            if one.lower_name.endswith("filter") or any(map(_asks, one.value)):
+            drew = one.lower_name in _OF_SHAPES or one.lower_name.endswith("filter")
+            if drew or any(map(_asks, one.value)):
                 note(left, one.lower_name)
         elif (value := clean(one.lower_name, one.value)) is None:
             note(left, one.lower_name)
@@ -195,7 +205,11 @@ def written(said: Mapping[str, str], stressed: Mapping[str, str]) -> str:
 
 def weighty(said: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """What of it decides how much is drawn."""
-    return [(key, value) for key, value in said if key in _WEIGHTY or "url(" in value or "context-" in value]
+    return [
+        (key, value)
+        for key, value in said
+        if key in _WEIGHTY or "url(" in value or "context-" in value.lower()
+    ]
 
 
 def _merged(matched: Iterable[Selected]) -> tuple[str, list[tuple[str, str]]]:
@@ -353,9 +367,17 @@ def _clean(token: Token) -> Token | None:
             return None
         return FunctionBlock(token.source_line, token.source_column, token.name, kept)
     else:
-        allowed = "comment dimension hash ident literal number percentage string unicode-range whitespace"
-        return token if token.type in allowed.split() else None
+        return token if token.type in _TOKENS else None
     return None if name is None else URLToken(token.source_line, token.source_column, name, f"url(#{name})")
+
+
+def _called(before: str) -> str:
+    """The name that a bracket after these words calls; SVG lets blanks stand between them."""
+    words = before.rstrip()
+    k = len(words)
+    while k and (words[k - 1].isalnum() or words[k - 1] in "_-"):
+        k -= 1
+    return words[k:]
 
 
 def _asks(token: Token) -> bool:
