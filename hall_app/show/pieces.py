@@ -27,7 +27,7 @@ __all__ = ["LEAN", "Pieces", "split"]
 
 LARGE = 32 << 10  # [bytes] from here on it is worth a name
 # [bytes] from here on a model's picture is a piece of its own: garments of one cloth share it
-PICTURE = 64 << 10
+PICTURE = 8 << 10
 # [bytes] of pieces, their frames come on top; beyond, what is in no first view is forgotten, the longest unasked first
 KEPT = 256 << 20
 LEAN = b"HALLLEAN"  # viser's own messages begin with a length, whose upper bytes are 0

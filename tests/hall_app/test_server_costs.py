@@ -23,7 +23,7 @@ from content_house import edit, make_house
 from full_matrix import by_day
 from PIL import Image
 from test_catalogue import Outline
-from test_server_door import PICTURE_BYTES, message_of, noise, whole
+from test_server_door import message_of, noise, whole
 
 from hall_app.content import load
 from hall_app.house import House
@@ -166,15 +166,18 @@ def message_at(when: float, *models: bytes) -> bytes:
     return message_of({"messages": messages, "timestampSec": when, "binaryBufferLengths": []})
 
 
+WHOLE = noise(1, 70_000)
+
+
 def test_a_piece_is_packed_once_however_many_ask(monkeypatch):
     packing = Counted(scene.best_frame)
     monkeypatch.setattr(scene, "best_frame", packing)
     pieces = Pieces()
-    name = kept(pieces, PICTURE_BYTES)
+    name = kept(pieces, WHOLE)
     with ThreadPoolExecutor(12) as visitors:
         frames = set(visitors.map(pieces.frame, [name] * 12))
     assert len(frames) == 1
-    assert packing.given.count((PICTURE_BYTES,)) == 1, "a house before may still pack its first view"
+    assert packing.given.count((WHOLE,)) == 1, "a house before may still pack its first view"
 
 
 def test_who_waits_for_pieces_takes_no_thread_each(hall, monkeypatch):
