@@ -107,6 +107,7 @@ PASSED_ON = {
     ("hall_app/content/models/scans.py", "refuse"),  # of a Finding
     ("hall_app/content/schema/complaints.py", "_problem"),  # of pydantic, and of REMEDIES
     ("hall_app/house/drafts/drawing/elements.py", "_tree"),
+    ("hall_app/house/drafts/drawing/elements.py", "redrawn"),
     ("hall_app/house/drafts/intake.py", "_model"),  # of a GlbError
     ("hall_app/house/drafts/intake.py", "_picture"),  # of Pillow
     ("hall_app/house/drafts/publication.py", "_put"),  # of the system
