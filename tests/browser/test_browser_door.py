@@ -10,9 +10,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 PROMISED = 1.5  # [s] until the title can be read
 FIRST_FLIGHT = 14_600  # [bytes] ten packets, what a server may send before the first acknowledgement
-FIRST_VIEW = (
-    4.0e6  # [bytes] of the shipped hall: 3.76 million with thirteen exhibits, 2.4 with the first five
-)
+FIRST_VIEW = 4.0e6  # [bytes] of the shipped hall: 3.76 million with thirteen exhibits
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ def in_eight_bits(picture: Image.Image) -> Image.Image:
     _, most = picture.getextrema()
     if not isinstance(most, int | float) or most <= 255:
         return picture
-    return picture.point(lambda value: value * (1.0 / 257.0) + 0.0)
+    return picture.point(lambda value: value * (1.0 / 257.0))
 
 
 def _head(data: bytes) -> tuple[str, tuple[int, int]]:

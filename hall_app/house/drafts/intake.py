@@ -11,10 +11,10 @@ import tempfile
 import threading
 import unicodedata
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.models.pictures import in_eight_bits
@@ -25,6 +25,7 @@ from hall_app.house.recording import Refused, keep
 
 __all__ = ["LARGEST", "USES", "Taken", "take_in"]
 
+T = TypeVar("T")
 MB = 1_000_000
 LARGEST: Mapping[str, int] = {
     "picture": 40 * MB,
@@ -205,17 +206,8 @@ def _drawing(shown: str, data: bytes) -> tuple[bytes, str]:
     """Written anew; a large one where it holds nobody up. Raises PeopleError."""
     if len(data) <= _AT_ONCE:
         return redrawn(shown, data, _picture, LARGEST["drawing"])
-    if not _READING.acquire(blocking=False):
-        raise PeopleError("too-often", seconds=10)
-    try:
-        found = beside(_redrawn, shown, data, within=_DRAWN_WITHIN)
-    finally:
-        _READING.release()
-    if found is None:
-        raise PeopleError("file-svg-drawn", name=shown)
-    if isinstance(found, Refused):
-        raise PeopleError(found.key, **found.facts)
-    return found
+    late = PeopleError("file-svg-drawn", name=shown)
+    return _read_beside(shown, late, _DRAWN_WITHIN, _redrawn, shown, data)
 
 
 def _redrawn(shown: str, data: bytes) -> tuple[bytes, str] | Refused:
@@ -227,21 +219,31 @@ def _redrawn(shown: str, data: bytes) -> tuple[bytes, str] | Refused:
 
 def _recording(shown: str, data: bytes, ending: str, kind: str) -> tuple[bytes, str, str]:
     """What is kept of a film or sound. Raises PeopleError."""
+    late = PeopleError("file-slow", name=shown, seconds=int(_WITHIN))
+    with tempfile.TemporaryDirectory(prefix="hall-") as folder:
+        source, target = Path(folder, f"source{ending}"), Path(folder, "target")
+        source.write_bytes(data)
+        found = _read_beside(shown, late, _WITHIN, keep, str(source), str(target), ending, kind)
+        _check_size(shown, kind, target.stat().st_size)
+        return target.read_bytes(), found.ending, found.told
+
+
+def _read_beside(
+    shown: str, late: PeopleError, within: float, act: Callable[..., T | Refused], *given: object
+) -> T:
+    """What act gives in a process of its own, of which there are few. late: the refusal where it takes longer than
+    within [s]. Raises PeopleError."""
     if not _READING.acquire(blocking=False):
         raise PeopleError("too-often", seconds=10)
     try:
-        with tempfile.TemporaryDirectory(prefix="hall-") as folder:
-            source, target = Path(folder, f"source{ending}"), Path(folder, "target")
-            source.write_bytes(data)
-            found = beside(keep, str(source), str(target), ending, kind, within=_WITHIN)
-            if found is None:
-                raise PeopleError("file-slow", name=shown, seconds=int(_WITHIN))
-            if isinstance(found, Refused):
-                raise PeopleError(found.key, name=shown, **found.facts)
-            _check_size(shown, kind, target.stat().st_size)
-            return target.read_bytes(), found.ending, found.told
+        found = beside(act, *given, within=within)
     finally:
         _READING.release()
+    if found is None:
+        raise late
+    if isinstance(found, Refused):
+        raise PeopleError(found.key, **{"name": shown, **found.facts})
+    return found
 
 
 def _safe(name: str, kind: str) -> str:

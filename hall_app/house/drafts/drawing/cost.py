@@ -6,11 +6,10 @@ corners they stand at, by masks and clips; long lines, texts, dashes and see-thr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
-from hall_app.house.drafts.drawing.dashes import dash, stretch, stretched
+from hall_app.house.drafts.drawing.dashes import Told, shortest_dash, stretch, stretched
 from hall_app.house.drafts.drawing.outlines import frame, numbers, outline
 from hall_app.house.drafts.drawing.styles import REFERENCE
 
@@ -32,7 +31,6 @@ _PAINTS, _MARKERS = (
     frozenset(("marker", "marker-start", "marker-mid", "marker-end")),
 )
 _PLAIN = {"mix-blend-mode": "normal", "isolation": "auto", "mask": "none"}
-Told = Mapping[Element, list[tuple[str, str]]]  # element -> all that is said of it, property and value
 
 
 @dataclass(frozen=True)
@@ -71,10 +69,9 @@ class _Counting:
         for one in root.iter():
             self._by_id.setdefault(one.get("id", ""), one)  # of two of one name browsers take the first
         self._above = {child: one for one in root.iter() for child in one}
-        self._named: dict[str, tuple[Element, ...]] = {}  # by what refers to them
+        self._named: dict[tuple[bool, str], tuple[Element, ...]] = {}  # by what refers to them
         self._cutting: dict[Element, bool] = {}
-        dashes = {value for said in told.values() for key, value in said if key == "stroke-dasharray"}
-        self._dash = min(filter(None, map(dash, dashes)), default=0.0)
+        self._dash = shortest_dash(told)
         if self._dash and any(map(stretched, told.values())):
             self._dash /= stretch(root, told)
         self._frame = frame(root) if self._dash else 0.0
@@ -165,13 +162,8 @@ class _Counting:
         return self._cutting[clip]
 
     def _targets(self, key: str, value: str) -> tuple[Element, ...]:
-        if key == "href":
-            names = [value[1:]] if value.startswith("#") else []
-        elif value in self._named:
-            return self._named[value]
-        else:
-            names = REFERENCE.findall(value)
-        found = tuple(self._by_id[name] for name in names if name in self._by_id)
-        if key != "href":
-            self._named[value] = found
-        return found
+        linked = key == "href" and value.startswith("#")
+        if (linked, value) not in self._named:
+            names = [value[1:]] if linked else REFERENCE.findall(value)
+            self._named[linked, value] = tuple(self._by_id[name] for name in names if name in self._by_id)
+        return self._named[linked, value]

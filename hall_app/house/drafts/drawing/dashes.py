@@ -4,16 +4,18 @@ width, whose dashes are as short however large the drawing is shown."""
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from functools import cache
 from math import inf, sqrt
 from xml.etree.ElementTree import Element
 
 from hall_app.house.drafts.drawing.outlines import NUMBER, numbers, side
 from hall_app.house.drafts.drawing.styles import note
 
-__all__ = ["TEXTS", "dash", "stretch", "stretched", "without_countless_dashes"]
+__all__ = ["TEXTS", "Told", "shortest_dash", "stretch", "stretched", "without_countless_dashes"]
 
 Said = list[tuple[str, str]]  # property and value
+Told = Mapping[Element, Said]  # all that is said of an element
 TEXTS = frozenset(("text", "tspan", "textPath"))
 _DASHES, _WIDTH = "stroke-dasharray", "vector-effect"
 _SCREEN = 4_000.0  # [px] that a drawing is shown at
@@ -21,10 +23,11 @@ _MOST_STRETCHED = 1_000.0
 _BY_BOXES = ("patternContentUnits", "maskContentUnits", "clipPathUnits")
 
 
-def dash(value: str) -> float:
-    """The length of a dash with its gap; 0: there is none."""
-    found = numbers(value)
-    return 2.0 * sum(found) / len(found) if found else 0.0
+def shortest_dash(told: Told) -> float:
+    """The length of the shortest dash with its gap; 0: there is none."""
+    said = {value for one in told.values() for key, value in one if key == _DASHES}
+    pairs = (2.0 * sum(found) / len(found) for found in map(numbers, said) if found)
+    return min(filter(None, pairs), default=0.0)
 
 
 def stretched(said: Said) -> bool:
@@ -32,13 +35,13 @@ def stretched(said: Said) -> bool:
     return any(key == _WIDTH and value.strip().lower() != "none" for key, value in said)
 
 
-def stretch(root: Element, told: Mapping[Element, Said]) -> float:
+def stretch(root: Element, told: Told) -> float:
     """[px] of a screen that a unit of any element is at most: what all enlarge, as if each lay in each."""
-    whole = 1.0
+    whole, enlarged = 1.0, cache(_enlarged)  # programs say the same of many elements
     for one in root.iter():
         given = [value for key, value in told.get(one, []) if key == "transform"]
         for value in (*given, one.get("patternTransform", "")):
-            whole *= _enlarged(value)
+            whole *= enlarged(value)
         by_boxes = any(one.get(name, "").strip() == "objectBoundingBox" for name in _BY_BOXES)
         if one.tag == "marker" or by_boxes or ("viewBox" in one.attrib and one is not root):
             return inf
@@ -47,9 +50,9 @@ def stretch(root: Element, told: Mapping[Element, Said]) -> float:
     return whole * max(1.0, shown / min(box, default=inf))
 
 
-def without_countless_dashes(root: Element, told: Mapping[Element, Said], left: Counter[str]) -> None:
+def without_countless_dashes(root: Element, told: Told, left: Counter[str]) -> None:
     """told: of every element; what is left out is no longer told."""
-    if not any(key == _DASHES and dash(value) for said in told.values() for key, value in said):
+    if not shortest_dash(told):
         return
     _none_along_letters(root, told)
     lines = [one for one, said in told.items() if stretched(said)]
@@ -60,7 +63,7 @@ def without_countless_dashes(root: Element, told: Mapping[Element, Said], left: 
             note(left, _WIDTH)
 
 
-def _none_along_letters(root: Element, told: Mapping[Element, Said]) -> None:
+def _none_along_letters(root: Element, told: Told) -> None:
     def visit(element: Element, dashed: bool) -> None:
         nonlocal used
         dashed = dashed or any(key == _DASHES and value != "none" for key, value in told[element])
@@ -98,8 +101,8 @@ def _enlarged(transform: str) -> float:
     return whole
 
 
-def _by(name: str, given: Iterable[float]) -> float:
-    match name, list(given):
+def _by(name: str, given: list[float]) -> float:
+    match name, given:
         case (("scale" | "scalex" | "scaley"), [_, *_] as sides):
             return max(map(abs, sides))
         case "matrix", [a, b, c, d, _, _]:  # the larger singular value

@@ -103,17 +103,17 @@ class Places:
         )
 
 
-def _others(content: Content, key: str) -> Iterable[tuple[int, Exhibit]]:
-    """The exhibits about it, numbered as the drawing and the list beneath it have them."""
-    return enumerate((one for one in content.exhibits if one.id != key), start=1)
+def _others(content: Content, key: str) -> list[Exhibit]:
+    """The exhibits about it, in the order of their numbers."""
+    return [one for one in content.exhibits if one.id != key]
 
 
 def _neighbours(asking: Asking, content: Content, key: str) -> str:
     """What the numbers on the drawing are, each a way to where that one is placed."""
     rows = "".join(
-        f'<li value="{number}"><a href="{asking.address(f"/office/collection/{one.id}/place")}">'
+        f'<li><a href="{asking.address(f"/office/collection/{one.id}/place")}">'
         f"{escape(getattr(one.file.title, asking.lang))}</a></li>"
-        for number, one in _others(content, key)
+        for one in _others(content, key)
     )
     return f'<ol class="neighbours">{rows}</ol>' if rows else ""
 
@@ -131,7 +131,7 @@ def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -
     others = "".join(
         _shape(body_footprint(one.id, one.file), "other", getattr(one.file.title, asking.lang))
         + f'<text x="{one.file.place.x:g}" y="{one.file.place.z:g}">{number}</text>'
-        for number, one in _others(content, key)
+        for number, one in enumerate(_others(content, key), start=1)
     )
     solids = "".join(_shape(one, one.kind, one.id) for one in plan_footprints(content.plan))
     start = content.hall.start
