@@ -9,27 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
-from hall_app.house.drafts.drawing.dashes import Told, shortest_dash, stretch, stretched
-from hall_app.house.drafts.drawing.outlines import frame, numbers, outline
+from hall_app.house.drafts.drawing.dashes import Told, dashes_along
+from hall_app.house.drafts.drawing.outlines import corners, letters
 from hall_app.house.drafts.drawing.styles import REFERENCE
 
 __all__ = ["MOST_DEEP", "MOST_DRAWN", "draws_too_much"]
 
 MOST_DEEP = 120
 MOST_DRAWN = 100_000
-_LINE, _LETTERS, _DASHES = (
-    128,
-    8,
-    64,
-)  # characters of a path, letters and dashes that count as one more element
+_LINE, _LETTERS, _DASHES = 128, 8, 64  # characters of a path, letters and dashes: one more element
 _LAYER = 40  # what a group counts that is drawn by itself before it is laid over what is below
 _STOPS = 8  # of a gradient, that count as an element for each that it paints
 
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
-_PAINTS, _MARKERS = (
-    frozenset(("fill", "stroke")),
-    frozenset(("marker", "marker-start", "marker-mid", "marker-end")),
-)
+_PAINTS = frozenset(("fill", "stroke"))
+_MARKERS = frozenset(("marker", "marker-start", "marker-mid", "marker-end"))
+_HANDED = _PAINTS | _MARKERS  # down to all that is below
 _PLAIN = {"mix-blend-mode": "normal", "isolation": "auto", "mask": "none"}
 
 
@@ -71,13 +66,12 @@ class _Counting:
         self._above = {child: one for one in root.iter() for child in one}
         self._named: dict[tuple[bool, str], tuple[Element, ...]] = {}  # by what refers to them
         self._cutting: dict[Element, bool] = {}
-        self._dash = shortest_dash(told)
-        if self._dash and any(map(stretched, told.values())):
-            self._dash /= stretch(root, told)
-        self._frame = frame(root) if self._dash else 0.0
+        self._dashes = dashes_along(root, told)
         self._within: set[Element] = set()
         self._known: dict[Element, _Drawn] = {}
         self._elsewhere: dict[Element, _Drawn | None] = {}
+        self._costs: dict[str, int] = {}  # of values
+        self._handing: dict[Element | None, tuple[Element, ...]] = {None: ()}
         # The most that a paint draws which markers take over from the line they stand at.
         self._taken_over = 0
         values = {value for said in told.values() for _, value in said}
@@ -106,25 +100,31 @@ class _Counting:
         return drawn
 
     def _alone(self, element: Element) -> _Drawn:
-        line = element.get("d", "") or element.get("points", "")  # a browser draws but the one its kind has
-        letters = len((element.text or "").strip()) + sum(len((one.tail or "").strip()) for one in element)
-        dashes = 0
-        if self._dash:
-            count = outline(element, self._frame) / self._dash / _DASHES
-            dashes = int(count) if count < MOST_DRAWN else MOST_DRAWN + 1  # what is no number, too
-        own = 1 + len(line) // _LINE + letters // _LETTERS + dashes
-        return _Drawn(own, len(numbers(line)) + 4 * (element.tag == "line"), own)
+        line = len(element.get("d", "")) + len(element.get("points", ""))
+        count = self._dashes.get(element, 0.0) / _DASHES
+        dashes = int(count) if count < MOST_DRAWN else MOST_DRAWN + 1  # what is no number, too
+        own = 1 + line // _LINE + letters(element) // _LETTERS + dashes
+        return _Drawn(own, corners(element), own)
 
     def _paint(self, key: str, value: str, below: _Drawn) -> int:
-        cost = 0
-        for one in self._targets(key, value):
-            painted = self._called(one).cost
-            cost += painted // _STOPS if one.tag in _GRADIENTS else painted
-        if key in _PAINTS:  # handed down to all that is below
+        if not (cost := self._once(key, value)):
+            return 0
+        if key in _PAINTS:
             return cost * below.elements
         if key in _MARKERS:
             places = below.corners if key in ("marker", "marker-mid") else 2 * below.elements
-            return cost * places * (1 + self._taken_over)
+            return cost * max(1, places) * (1 + self._taken_over)
+        return cost
+
+    def _once(self, key: str, value: str) -> int:
+        """What a value draws where it is asked for once; programs say the same of many elements."""
+        if (known := self._costs.get(value)) is not None:
+            return known
+        cost = 0
+        for one in self._targets(key, value):
+            drawn = self._called(one).cost
+            cost += max(1, drawn // _STOPS) if one.tag in _GRADIENTS else drawn
+        self._costs[value] = cost
         return cost
 
     def _called(self, target: Element) -> _Drawn:
@@ -135,14 +135,22 @@ class _Counting:
             return known
         self._elsewhere[target] = None
         drawn = self.of(target)
-        above = self._above.get(target) if target.tag not in _GRADIENTS else None
-        while above is not None:
+        for above in () if target.tag in _GRADIENTS else self._above_with_paint(target):
             if above not in self._within:
-                handed = [said for said in self._told.get(above, []) if said[0] in _PAINTS | _MARKERS]
+                handed = [said for said in self._told[above] if said[0] in _HANDED]
                 drawn += _Drawn(cost=sum(self._paint(*said, drawn) for said in handed))
-            above = self._above.get(above)
         self._elsewhere[target] = drawn
         return drawn
+
+    def _above_with_paint(self, element: Element) -> tuple[Element, ...]:
+        """What it lies in that hands any paint or marker of the file down."""
+        above = self._above.get(element)
+        if above not in self._handing:
+            assert above is not None
+            said = self._told.get(above, [])
+            hands = any(key in _HANDED and self._targets(key, value) for key, value in said)
+            self._handing[above] = (*((above,) if hands else ()), *self._above_with_paint(above))
+        return self._handing[above]
 
     def _is_layer(self, element: Element, key: str, value: str) -> bool:
         """Whether the element is drawn by itself before it is laid over what is below."""

@@ -1,91 +1,114 @@
-"""Where dashes are left out, since nobody can tell how many they are: along letters, and in lines of a screen's own
-width, whose dashes are as short however large the drawing is shown."""
+"""How many dashes lie along lines and letters at most: a browser draws each, seen or not."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from functools import cache
 from math import inf, sqrt
 from xml.etree.ElementTree import Element
 
-from hall_app.house.drafts.drawing.outlines import NUMBER, numbers, side
-from hall_app.house.drafts.drawing.styles import note
+from hall_app.house.drafts.drawing.outlines import NUMBER, frame, letters, numbers, outline, side
 
-__all__ = ["TEXTS", "Told", "shortest_dash", "stretch", "stretched", "without_countless_dashes"]
+__all__ = ["Told", "dashes_along", "shortest_dash"]
 
 Said = list[tuple[str, str]]  # property and value
 Told = Mapping[Element, Said]  # all that is said of an element
-TEXTS = frozenset(("text", "tspan", "textPath"))
 _DASHES, _WIDTH = "stroke-dasharray", "vector-effect"
 _SCREEN = 4_000.0  # [px] that a drawing is shown at
-_MOST_STRETCHED = 1_000.0
-_BY_BOXES = ("patternContentUnits", "maskContentUnits", "clipPathUnits")
+_APART = frozenset(("marker", "mask", "pattern", "symbol"))  # drawn elsewhere, as large as that has it
+_LETTER = 64.0  # sizes of its font that the outline of a letter is long, 鬱 included
+_FONT, _LARGEST_FONT = 32.0, 10_000.0  # [px] where none is said, and what browsers draw at most
+_MEASURE = re.compile(r"[^\s/,]+")
 
 
 def shortest_dash(told: Told) -> float:
-    """The length of the shortest dash with its gap; 0: there is none."""
+    """The length of the shortest dash with the gap before or after it; 0: there is none."""
     said = {value for one in told.values() for key, value in one if key == _DASHES}
-    pairs = (2.0 * sum(found) / len(found) for found in map(numbers, said) if found)
-    return min(filter(None, pairs), default=0.0)
+    return min(filter(None, map(_shortest_pair, said)), default=0.0)
 
 
-def stretched(said: Said) -> bool:
-    """Whether an element's line is as wide as a screen has it, whatever its drawing's units are."""
-    return any(key == _WIDTH and value.strip().lower() != "none" for key, value in said)
+def dashes_along(root: Element, told: Told) -> dict[Element, float]:
+    """Of each element that dashes reach; infinite where nobody knows. told: of elements that anything is said of."""
+    if not (shortest := shortest_dash(told)):
+        return {}
+    wholly = _shown(root)
+    sides, font = frame(root), _largest_font(told)
+    found: dict[Element, float] = {}
+    for element, enlarged in _reached(root, told):
+        length = outline(element, sides)
+        if count := letters(element):
+            length += count * _LETTER * font
+        if length and any(
+            key == _WIDTH and value.strip().lower() != "none" for key, value in told.get(element, [])
+        ):
+            length *= (
+                enlarged * wholly
+            )  # as wide and as short as the screen has them, however large it is shown
+        found[element] = length / shortest
+    return found
 
 
-def stretch(root: Element, told: Told) -> float:
-    """[px] of a screen that a unit of any element is at most: what all enlarge, as if each lay in each."""
-    whole, enlarged = 1.0, cache(_enlarged)  # programs say the same of many elements
-    for one in root.iter():
-        given = [value for key, value in told.get(one, []) if key == "transform"]
-        for value in (*given, one.get("patternTransform", "")):
-            whole *= enlarged(value)
-        by_boxes = any(one.get(name, "").strip() == "objectBoundingBox" for name in _BY_BOXES)
-        if one.tag == "marker" or by_boxes or ("viewBox" in one.attrib and one is not root):
-            return inf
-    box = [each for each in numbers(root.get("viewBox", ""))[2:] if each > 0.0]
-    shown = max(_SCREEN, side(root.get("width", "")), side(root.get("height", "")))
-    return whole * max(1.0, shown / min(box, default=inf))
+def _shortest_pair(value: str) -> float:
+    """A long gap makes no dash before it longer: each line begins anew."""
+    found = numbers(value)
+    pairs = [one + other for one, other in zip(found, found[1:] + found[:1], strict=True)]
+    return max(min(pairs), 1e-300) if any(found) else 0.0
 
 
-def without_countless_dashes(root: Element, told: Told, left: Counter[str]) -> None:
-    """told: of every element; what is left out is no longer told."""
-    if not shortest_dash(told):
-        return
-    _none_along_letters(root, told)
-    lines = [one for one, said in told.items() if stretched(said)]
-    if lines and stretch(root, told) > _MOST_STRETCHED:
-        for one in lines:
-            told[one][:] = [said for said in told[one] if said[0] != _WIDTH]
-            _stress(one, _WIDTH)
-            note(left, _WIDTH)
+def _reached(root: Element, told: Told) -> Iterator[tuple[Element, float]]:
+    """The elements that dashes reach, and how much longer any line of theirs is drawn than it is written."""
 
-
-def _none_along_letters(root: Element, told: Told) -> None:
-    def visit(element: Element, dashed: bool) -> None:
-        nonlocal used
-        dashed = dashed or any(key == _DASHES and value != "none" for key, value in told[element])
-        used = used or (dashed and element.tag == "use")
-        if element.tag in TEXTS:
-            texts.append((element, dashed))
+    def visit(element: Element, dashed: bool, whole: float) -> None:
+        said = told.get(element, [])
+        dashed = dashed or any(
+            key == _DASHES and value.lower() not in ("none", "initial") for key, value in said
+        )
+        for key, value in said:
+            whole *= enlarged(value) if key == "transform" else 1.0
+        if element.tag in _APART or ("viewBox" in element.attrib and element is not root):
+            whole = inf
+        every.append((element, dashed, whole))
         for child in element:
-            visit(child, dashed)
+            visit(child, dashed, whole)
 
-    used = False  # what is used may be letters that lie elsewhere
-    texts: list[tuple[Element, bool]] = []
-    visit(root, False)
-    for element, dashed in texts:
-        if dashed or used:
-            _stress(element, _DASHES)
+    enlarged = cache(_enlarged)  # programs say the same of many elements
+    every: list[tuple[Element, bool, float]] = []
+    visit(root, False, 1.0)
+    uses = [(dashed, whole) for element, dashed, whole in every if element.tag == "use"]
+    handed = any(dashed for dashed, _ in uses)  # to what lies elsewhere
+    elsewhere = inf if any(whole > 1.0 for _, whole in uses) else 1.0
+    for element, dashed, whole in every:
+        if dashed or handed:
+            yield element, whole * elsewhere
 
 
-def _stress(element: Element, key: str) -> None:
-    """That there is none, whatever else is said; once. What an escape hides is no end of what was said before."""
-    none, before = f"{key}:none!important", element.get("style", "")
-    if before != none and (not before.endswith(f";{none}") or before.endswith(f"\\;{none}")):
-        element.set("style", f"{before};{none}".lstrip(";"))
+def _shown(root: Element) -> float:
+    """[px] of a screen that a unit of the whole drawing is at most."""
+    sides = [side(root.get(one, "")) for one in ("width", "height")]
+    box = numbers(root.get("viewBox", ""))[2:] or sides
+    return max(1.0, max(_SCREEN, *sides) / min(filter(None, box), default=inf))
+
+
+def _largest_font(told: Told) -> float:
+    """[px] of any letter; infinite where lines lie below letters, which are as long as their gaps."""
+    largest = _FONT
+    for key, value in {one for said in told.values() for one in said}:
+        if key.startswith("text-decoration") and value.lower() not in ("none", "inherit", "initial"):
+            return inf
+        if key in ("font", "font-size"):
+            for word in _MEASURE.findall(value):
+                largest = max(largest, _font(word, alone=key == "font-size"))
+    return largest
+
+
+def _font(word: str, *, alone: bool) -> float:
+    """[px] that a word says; in `font` a number by itself is a weight or a line's height."""
+    if NUMBER.fullmatch(word):
+        return min(abs(float(word)), _LARGEST_FONT) if alone else 0.0
+    if word[0] in "+-.0123456789" or "(" in word or word.lower() == "larger":
+        return min(side(word, inf), _LARGEST_FONT)  # inf: of what it lies in
+    return 0.0
 
 
 def _enlarged(transform: str) -> float:

@@ -10,7 +10,7 @@ import base64
 import codecs
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass, field
 from typing import NoReturn
 from urllib.parse import unquote
@@ -21,17 +21,16 @@ import tinycss2
 
 from hall_app.content.models import PictureError, picture_size
 from hall_app.house.drafts.drawing.cost import MOST_DEEP, draws_too_much
-from hall_app.house.drafts.drawing.dashes import TEXTS, without_countless_dashes
+from hall_app.house.drafts.drawing.dashes import Told, shortest_dash
+from hall_app.house.drafts.drawing.sheets import TooMuch, told_by_sheets
 from hall_app.house.drafts.drawing.styles import (
     LONGEST_VALUE,
     PROPERTIES,
-    TooMuch,
     clean,
     declared,
     note,
     plain,
     target,
-    told_by_sheets,
     weighty,
     written,
 )
@@ -45,16 +44,10 @@ _DRAWN = frozenset(
     f"svg g a defs symbol switch title desc {_SHAPES} tspan textPath linearGradient radialGradient stop pattern "
     "clipPath mask marker".split()
 )
+_TEXTS = frozenset(("text", "tspan", "textPath"))
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]*")
-_UNUSED = (
-    "on",
-    "filter",
-    "begin",
-    "end",
-    "dur",
-    "values",
-    "pathlength",
-)  # how names begin that draw nothing here
+# How names begin that draw nothing here.
+_UNUSED = ("on", "filter", "begin", "end", "dur", "values", "pathlength")
 _PICTURE = re.compile(r"data:image/(?:png|jpe?g|webp)\s*(?:;[\w=-]+\s*)*;\s*base64\s*,", re.IGNORECASE)
 _TYPES = {".png": "png", ".jpg": "jpeg", ".webp": "webp"}
 _XML = "{http://www.w3.org/XML/1998/namespace}"
@@ -72,7 +65,8 @@ _ENCODINGS = {
     "shift_jis": "cp932",
 }
 
-_READ = frozenset(("clip-path", "mask", "stroke-dasharray"))  # as a style says them, whatever they look like
+_DASHES = "stroke-dasharray"
+_READ = frozenset(("clip-path", "mask", _DASHES))  # as a style says them, whatever they look like
 _LONGEST_SPACE = 200  # characters of a namespace's name, which every name of the tree repeats
 _MOST_WRITTEN = 60_000  # elements of the file
 _MOST_ATTRIBUTES = 300_000
@@ -88,19 +82,18 @@ def redrawn(
     """(SVG, what is known of it). name: for messages; picture: draws an embedded picture anew, as (bytes, ending, …);
     most: bytes it may have once pictures are drawn anew.
 
-    Raises PeopleError.
+    Without dashes where they would be too many, or nobody can tell. Raises PeopleError.
     """
+    tree = _tree(name, data)
     cleaning = _Cleaning(name, picture, most)
     try:
-        root = cleaning.kept(_tree(name, data), "svg")
-        told, sheet = told_by_sheets(cleaning.sheets, root, cleaning.left)
-        _without_links(root)
-        said = {
-            one: [*weighty(one.attrib.items()), *told.get(one, ()), *cleaning.said.get(one, ())]
-            for one in root.iter()
-        }
-        without_countless_dashes(root, said, cleaning.left)
-        if draws_too_much(root, said):
+        root, sheet, said = cleaning.cleaned(tree)
+        much = draws_too_much(root, said)
+        if much and shortest_dash(said):
+            cleaning = cleaning.without(_DASHES)
+            root, sheet, said = cleaning.cleaned(tree)
+            much = draws_too_much(root, said)
+        if much:
             raise TooMuch
     except PeopleError:
         raise
@@ -212,6 +205,27 @@ class _Cleaning:
     pictures: dict[str, str | None] = field(default_factory=dict)
     pixels: int = 0
     embedded: int = 0  # characters of pictures, each as often as it is written
+    properties: Set[str] = PROPERTIES  # that are kept
+
+    def without(self, key: str) -> _Cleaning:
+        """Begun anew, for a file whose pictures are drawn already."""
+        fewer = _Cleaning(self.name, self.picture, self.most, properties=self.properties - {key})
+        fewer.pictures, fewer.pixels = self.pictures, self.pixels
+        return fewer
+
+    def cleaned(self, tree: ElementTree.Element) -> tuple[ElementTree.Element, str, Told]:
+        """(what is kept of it, its style sheet, what is said of each element that decides how much is drawn).
+
+        Raises TooMuch, PeopleError, RecursionError, and ValueError of tinycss2.
+        """
+        root = self.kept(tree, "svg")
+        told, sheet = told_by_sheets(self.sheets, root, self.left, self.properties)
+        _without_links(root)
+        said = {
+            one: [*weighty(one.attrib.items()), *told.get(one, ()), *self.said.get(one, ())]
+            for one in root.iter()
+        }
+        return root, sheet, said
 
     def kept(self, source: ElementTree.Element, tag: str) -> ElementTree.Element:
         """The element with what draws of it under that name, its names without a namespace."""
@@ -238,15 +252,16 @@ class _Cleaning:
         if name == _XML + "space" or (name == _XML + "lang" and _LANGUAGE.fullmatch(value)):
             made.set(name, value)
         elif local == "href" and space in ("", "{" + _XLINK):
-            kept = (
-                value.strip()
-                if made.tag == "image"
-                else (named := target(value, linked=True)) and f"#{named}"
-            )
+            picture = made.tag == "image"
+            named = None if picture else target(value, linked=True)
+            kept = self._anew(value) if picture else named and f"#{named}"
             if kept is None:
                 note(self.left, "href")
             elif not space or "href" not in made.attrib:
                 made.set("href", kept)
+                self.embedded += len(kept) if picture else 0
+                if self.embedded > self.most:
+                    self.too_large()
         elif space or not _NAME.fullmatch(local) or local.startswith("data-"):
             return
         elif local.lower().startswith(_UNUSED):
@@ -265,7 +280,7 @@ class _Cleaning:
         read = name in PROPERTIES and (name in _READ or not plain(value))
         if not read:
             return value if plain(value) else None
-        if len(value) > LONGEST_VALUE:
+        if len(value) > LONGEST_VALUE or name not in self.properties:
             return None
         if (name, value) not in self.values:
             tokens = tinycss2.parse_component_value_list(value, skip_comments=True)
@@ -279,7 +294,7 @@ class _Cleaning:
             if self.styled > _MOST_STYLED:
                 raise PeopleError("file-svg-drawn", name=self.name)
             left = Counter[str]()
-            said, stressed = declared(value, left)
+            said, stressed = declared(value, left, self.properties)
             self.styles[value] = (
                 written(said, stressed),
                 weighty([*said.items(), *stressed.items()]),
@@ -295,20 +310,15 @@ class _Cleaning:
         raise PeopleError("file-size", name=self.name, kind="drawing", most=self.most // 1_000_000)
 
     def _embedded(self, element: ElementTree.Element) -> bool:
-        """Whether the picture lies in the file, and can be drawn; it is drawn anew then."""
-        keys = [name for name in element.attrib if name.rpartition("}")[2] == "href"]
-        given = element.get(keys[0], "").strip() if keys else ""
+        """Whether the picture lies in the file, and can be drawn."""
+        keys = (name for name in element.attrib if name.rpartition("}")[2] == "href")
+        return any(self._anew(element.get(name, "")) for name in keys)
+
+    def _anew(self, given: str) -> str | None:
+        given = given.strip()
         if given not in self.pictures:
             self.pictures[given] = self._drawn_anew(given)
-        if (anew := self.pictures[given]) is None:
-            return False
-        self.embedded += len(anew)
-        if self.embedded > self.most:
-            self.too_large()
-        for name in keys:
-            del element.attrib[name]
-        element.set("href", anew)
-        return True
+        return self.pictures[given]
 
     def _drawn_anew(self, given: str) -> str | None:
         head = _PICTURE.match(given)
@@ -344,7 +354,7 @@ def _without_links(root: ElementTree.Element) -> None:
     for one in root.iter():
         for child in one:
             if child.tag == "a":
-                child.tag = "tspan" if one.tag in TEXTS else "g"
+                child.tag = "tspan" if one.tag in _TEXTS else "g"
                 for name in ("target", "download", "type", "href"):
                     child.attrib.pop(name, None)
 

@@ -6,7 +6,7 @@ import re
 from math import hypot, inf
 from xml.etree.ElementTree import Element
 
-__all__ = ["NUMBER", "frame", "numbers", "outline", "side"]
+__all__ = ["NUMBER", "corners", "frame", "letters", "numbers", "outline", "side"]
 
 _A_NUMBER = r"[+-]?(?:\d++\.?+\d*+|\.\d++)(?:e[+-]?\d++)?+"
 NUMBER = re.compile(_A_NUMBER, re.IGNORECASE)
@@ -22,7 +22,9 @@ _PAIRS = {"q": 2, "s": 2, "c": 3}  # of a segment's numbers
 _SIDES = "x y x1 y1 x2 y2 cx cy r rx ry width height".split()
 _BY_SIDES = frozenset(("rect", "circle", "ellipse", "line"))
 _UNITS = {"": 1.0, "px": 1.0, "pt": 1.4, "pc": 16.0, "mm": 3.8, "cm": 38.0, "in": 96.0}
-_OF_LETTERS = 1e6  # [px], what a unit is at most that goes by the size of letters
+# [px] of units that go by the size of letters, which browsers draw no larger than 10,000.
+_UNITS |= dict.fromkeys(("em", "rem", "ex", "ch", "ic", "cap"), 10_000.0)
+_FRAMES = frozenset(("svg", "use", "symbol"))
 _ROOM = 10_000.0  # [px] that a share is of at least: a drawing need not say how large it is
 
 
@@ -32,8 +34,21 @@ def numbers(text: str) -> list[float]:
 
 
 def frame(root: Element) -> float:
-    """[px] of which shares are asked at most: the largest number of any frame."""
+    """[px] of which shares are asked at most: the largest number of any frame; infinite where one may pass its own."""
     return max(_ROOM, *map(_largest, root.iter()))
+
+
+def letters(element: Element) -> int:
+    """How many are written in it, not in its children."""
+    return len((element.text or "").strip()) + sum(len((one.tail or "").strip()) for one in element)
+
+
+def corners(element: Element) -> int:
+    """Of its own line, at most."""
+    if element.tag == "line":
+        return 2
+    line = _line(element)
+    return len(numbers(line)) + line.count("z") + line.count("Z")
 
 
 def side(text: str, share: float = 0.0) -> float:
@@ -43,24 +58,29 @@ def side(text: str, share: float = 0.0) -> float:
         return 0.0
     if (read := _SIDE.fullmatch(text)) is None:
         return inf
-    unit = share / 100.0 if read[2] == "%" else _UNITS.get(read[2].lower(), _OF_LETTERS)
-    return abs(float(read[1])) * unit
+    unit = share / 100.0 if read[2] == "%" else _UNITS.get(read[2].lower(), inf)
+    many = abs(float(read[1]))
+    return many * unit if many and unit else 0.0
 
 
 def outline(element: Element, of: float) -> float:
     """How long the lines of a shape are at most; 0 for what is none. of: `frame`."""
-    if element.tag in ("polyline", "polygon"):
-        return _along(f"M{element.get('points', '')}Z")
-    if element.tag == "path":
-        return _along(element.get("d", ""))
     if element.tag not in _BY_SIDES:
-        return 0.0
+        return _along(_line(element))
     return 4.0 * sum(side(value, of) for one in _SIDES if (value := element.get(one)))
 
 
+def _line(element: Element) -> str:
+    """What its kind has of it, whatever else is written there."""
+    if element.tag in ("polyline", "polygon"):
+        return f"M{element.get('points', '')}Z"
+    return element.get("d", "") if element.tag == "path" else ""
+
+
 def _largest(element: Element) -> float:
-    sides = (side(element.get(one, "")) for one in ("width", "height"))
-    return max(*numbers(element.get("viewBox", "")), *sides)
+    sides = [element.get(one, "") for one in ("width", "height")]
+    beyond = element.tag in _FRAMES and any("%" in one and side(one, 100.0) > 100.0 for one in sides)
+    return inf if beyond else max(*numbers(element.get("viewBox", "")), *map(side, sides))
 
 
 def _along(path: str) -> float:
@@ -87,7 +107,7 @@ def _along(path: str) -> float:
                 return inf
             for rx, ry, new_x, new_y in arcs:
                 new_x, new_y = new_x + x * relative, new_y + y * relative
-                total += 7.0 * (abs(rx) + abs(ry)) + 4.0 * hypot(new_x - x, new_y - y)
+                total += _arc(abs(rx), abs(ry), hypot(new_x - x, new_y - y))
                 x, y = new_x, new_y
         elif kind == "t":
             for k in range(0, len(found) - 1, 2):
@@ -109,6 +129,12 @@ def _along(path: str) -> float:
                 if kind == "m" and k == 0:
                     first_x, first_y = x, y
     return total
+
+
+def _arc(rx: float, ry: float, chord: float) -> float:
+    """Radii that do not reach from end to end grow alike, and one that is 0 makes the arc a line."""
+    small, large = sorted((rx, ry))
+    return chord + (7.0 * large * max(1.0, chord / (2.0 * small)) if small else 0.0)
 
 
 def _arcs(text: str) -> list[tuple[float, float, float, float]] | None:
