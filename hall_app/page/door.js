@@ -176,7 +176,6 @@
         if (got < 4 + length) return;
         index = JSON.parse(new TextDecoder().decode(data.subarray(4, 4 + length)));
         at = 4 + length;
-        for (const [name, tell] of waiting) if (!index.some(([known]) => known === name)) tell();
       }
       for (; index && next < index.length && at + index[next][1] <= got; next += 1) {
         const [name, length] = index[next];
@@ -188,10 +187,9 @@
     progress("models", 1);
   }
 
-  /** The bytes of a piece: of the pack, or fetched by its name. */
+  /** The bytes of a piece: of the pack, or fetched by its name once that is there. */
   async function piece(name) {
-    if (!pieces.has(name) && !settled && !(index && !index.some(([known]) => known === name)))
-      await new Promise((tell) => waiting.set(name, tell));
+    if (!pieces.has(name) && !settled) await new Promise((tell) => waiting.set(name, tell));
     if (pieces.has(name)) return pieces.get(name).buffer;
     return (await ask(`${files.models.piece}${name}`)).arrayBuffer();
   }

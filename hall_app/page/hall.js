@@ -103,9 +103,9 @@ function firstLook(beat) {
 
 /** What tests and curious visitors may use: to read, and to go where the minimap goes. */
 function publish({ visit, quality }, points, display) {
-  const { goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing } = visit;
+  const { goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing, whole } = visit;
   window.hall = Object.freeze({
-    goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing,
+    goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing, whole,
     displayed: camera.displayed,
     display: () => display,
     quality: () => (quality ? { choice: quality.choice, level: quality.level } : null),

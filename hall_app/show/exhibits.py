@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hall_app.content.bakes.models import ExhibitModels, models_of
@@ -17,6 +17,9 @@ from hall_app.content.problems import Problem
 from hall_app.show.scene import Figure, Model
 
 __all__ = ["Drawn", "drawn_exhibits"]
+
+_FIRST = 10  # exhibits that come before a visitor can enter; what else there is comes while he walks
+_ASIDE = math.radians(50.0)  # from where he looks first, that a wide picture shows
 
 
 @dataclass(frozen=True)
@@ -64,8 +67,22 @@ def drawn_exhibits(
         if figure is not None:
             models[exhibit.id] = found
             figures.append(figure)
+    first = _first_seen(content, figures)
+    figures = [replace(figure, first=figure.id in first) for figure in figures]
     keys = {e.id: key_now(content, e) for e in content.exhibits if e.file.baked_key is not None}
     return Drawn(tuple(figures), models, keys, tuple(problems))
+
+
+def _first_seen(content: Content, figures: Iterable[Figure]) -> frozenset[str]:
+    """Those that stand in the picture at the entrance, the nearest first, then what stands aside of it or behind."""
+    start = content.hall.start
+    ahead = math.radians(start.facing)
+
+    def rank(figure: Figure) -> tuple[bool, float]:
+        x, z = figure.x - start.x, figure.z - start.z
+        return abs(math.remainder(math.atan2(x, z) - ahead, math.tau)) > _ASIDE, math.hypot(x, z)
+
+    return frozenset(figure.id for figure in sorted(figures, key=rank)[:_FIRST])
 
 
 def _fix(error: GlbError | OSError) -> str:

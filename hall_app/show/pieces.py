@@ -9,13 +9,14 @@ frames, not decoded and coded anew.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import re
 import struct
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
@@ -28,7 +29,7 @@ __all__ = ["LEAN", "Pieces", "split"]
 LARGE = 32 << 10  # [bytes] from here on it is worth a name
 # [bytes] from here on a model's picture is a piece of its own: garments of one cloth share it
 PICTURE = 8 << 10
-# [bytes] of pieces, their frames come on top; beyond, what is in no first view is forgotten, the longest unasked first
+# [bytes] of pieces, their frames come on top; beyond, what no exhibit shows is forgotten, the longest unasked first
 KEPT = 256 << 20
 LEAN = b"HALLLEAN"  # viser's own messages begin with a length, whose upper bytes are 0
 
@@ -86,6 +87,7 @@ class Pieces:
         self._weight = 0  # [bytes] of all pieces
         self._models: dict[bytes, _Model] = {}  # by their stand-ins
         self._shown: dict[str, bytes] = {}  # node -> the stand-in of its model
+        self._later: set[str] = set()  # of these nodes, those that are not in the first view
         self._packs: OrderedDict[str, _Once] = OrderedDict()
         self._told = False
         self._decompress = zstandard.ZstdDecompressor().decompress
@@ -107,16 +109,19 @@ class Pieces:
             self._forget_beside(names)
         return mark
 
-    def show(self, node: str, model: bytes) -> bytes:
-        """The same for a model that every visitor's first view needs: kept until `node` shows another."""
+    def show(self, node: str, model: bytes, *, first: bool = True) -> bytes:
+        """The same for a model that every visitor sees: kept until `node` shows another. first: in the first view, so
+        that it comes with the pack, else after it."""
         with self._changing:
             self._shown[node] = self.stand_in(model)
+            (self._later.discard if first else self._later.add)(node)
             return self._shown[node]
 
     def hide(self, node: str) -> None:
-        """`node` is no longer part of the first view."""
+        """`node` is shown no longer."""
         with self._changing:
             self._shown.pop(node, None)
+            self._later.discard(node)
 
     def _keep(self, data: bytes) -> str:
         name = _name(data)
@@ -132,16 +137,17 @@ class Pieces:
     def _forget_beside(self, names: tuple[str, ...]) -> None:
         if self._weight <= KEPT:
             return
-        needed = {*names, *self._first_view()}
+        needed = {*names, *self._of(self._shown)}
         for name in [name for name in self._pieces if name not in needed]:
             if self._weight <= KEPT:
                 return
             self._weight -= len(self._pieces.pop(name).raw)
             self._models = {mark: model for mark, model in self._models.items() if name not in model.names}
 
-    def _first_view(self) -> tuple[str, ...]:
-        """Names of all that is shown, each once."""
-        shown = (self._models[mark] for mark in self._shown.values() if mark in self._models)
+    def _of(self, nodes: Iterable[str]) -> tuple[str, ...]:
+        """Names of the pieces of what nodes show, each once."""
+        marks = (self._shown[node] for node in nodes)
+        shown = (self._models[mark] for mark in marks if mark in self._models)
         return tuple(dict.fromkeys(name for model in shown for name in model.names))
 
     # What the page asks for.
@@ -160,7 +166,7 @@ class Pieces:
     def plan_pack(self) -> tuple[str, int]:
         """Name of the pack of all that the first view needs, and its bytes: guessed until it is made."""
         with self._changing:
-            names = self._first_view()
+            names = self._of(node for node in self._shown if node not in self._later)
             pack = _name("".join(names).encode())
             once = self._packs.setdefault(pack, _Once(lambda: self._joined(names)))
             self._packs.move_to_end(pack)
@@ -174,6 +180,14 @@ class Pieces:
         Raises KeyError for an unknown name.
         """
         return self._packs[name]()
+
+    def make_later(self) -> None:
+        """The frames of what comes after the first view; slow the first time."""
+        with self._changing:
+            names = self._of(self._later)
+        for name in names:
+            with contextlib.suppress(KeyError):  # another is shown by now
+                self.frame(name)
 
     def _joined(self, names: tuple[str, ...]) -> bytes:
         frames = {piece: self.frame(piece) for piece in names}

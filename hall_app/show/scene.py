@@ -36,7 +36,7 @@ class Model:
 @dataclass(frozen=True)
 class Figure:
     """One exhibit as drawn: GLB bytes for the hall, foot at (x, y, z) [m], `facing` [deg] about +y; close: for the
-    close-up; compared: what it shows there side by side on request."""
+    close-up; compared: what it shows there side by side on request; first: before a visitor can enter, else after."""
 
     id: str
     hall: bytes
@@ -46,6 +46,7 @@ class Figure:
     z: float
     facing: float
     compared: Model | None = None
+    first: bool = True
 
 
 def node_name(exhibit: str) -> str:
@@ -67,6 +68,9 @@ class HallScene:
         self.marks = Marks()
         self._handles: dict[str, viser.GlbHandle] = {}
         self._figures: dict[str, Figure] = {}
+        self._clickable = frozenset[str]()
+        # Page -> what was brought to it after its first view. viser's threads forget pages.
+        self._brought: dict[int, dict[str, viser.GlbHandle]] = {}
         self._on_click: Callable[[int, str], None] = lambda client, exhibit: None
         self._configure()
 
@@ -100,6 +104,7 @@ class HallScene:
 
     async def _forget(self, client: viser.ClientHandle) -> None:
         self.marks.forget(client.client_id)
+        self._brought.pop(client.client_id, None)
 
     # The hall.
 
@@ -124,26 +129,50 @@ class HallScene:
 
     def show(self, figures: tuple[Figure, ...], clickable: frozenset[str]) -> None:
         """Draw these exhibits; what is unchanged stays as it is."""
-        for gone in set(self._figures) - {figure.id for figure in figures}:
-            self._handles.pop(gone).remove()
-            self.pieces.hide(node_name(gone))
-            del self._figures[gone]
-        for figure in figures:
-            known = self._figures.get(figure.id)
-            self._figures[figure.id] = figure
-            if known is None or known.hall != figure.hall:
-                self._add(figure, clickable)
-            handle = self._handles[figure.id]
-            handle.position = (figure.x, figure.y, figure.z)
-            handle.wxyz = about_y(math.radians(figure.facing))
+        self._clickable = clickable
+        last, self._figures = self._figures, {figure.id: figure for figure in figures}
+        for exhibit in last:
+            if exhibit not in self._figures:
+                self.pieces.hide(node_name(exhibit))
+        changed = {
+            exhibit
+            for exhibit, figure in self._figures.items()
+            if exhibit not in last or (last[exhibit].hall, last[exhibit].first) != (figure.hall, figure.first)
+        }
+        for exhibit in changed:
+            figure = self._figures[exhibit]
+            self.pieces.show(node_name(exhibit), figure.hall, first=figure.first)
+        self._draw(self.server.scene, self._handles, changed, first=True)
+        for client_id, client in self.server.get_clients().items():
+            if (handles := self._brought.get(client_id)) is not None:
+                self._draw(client.scene, handles, changed, first=False)
 
-    def _add(self, figure: Figure, clickable: frozenset[str]) -> None:
-        node = node_name(figure.id)
-        model = self.pieces.show(node, figure.hall)
-        handle = self.server.scene.add_glb(node, model, cast_shadow=False, receive_shadow=False)
-        self._handles[figure.id] = handle
-        if figure.id in clickable:
+    def bring(self, client_id: int | None) -> None:
+        """Draw for this page, which stands in the hall, what was not in its first view."""
+        client = None if client_id is None else self.server.get_clients().get(client_id)
+        if client is not None:
+            handles = self._brought.setdefault(client.client_id, {})
+            self._draw(client.scene, handles, set(), first=False)
+
+    def _draw(
+        self, scene: viser.SceneApi, handles: dict[str, viser.GlbHandle], changed: set[str], *, first: bool
+    ) -> None:
+        """Of all figures those that are, or are not, of the first view."""
+        wanted = {exhibit: figure for exhibit, figure in self._figures.items() if figure.first == first}
+        for gone in handles.keys() - wanted.keys():
+            handles.pop(gone).remove()
+        for exhibit, figure in wanted.items():
+            if exhibit in changed or exhibit not in handles:
+                handles[exhibit] = self._add(scene, figure)
+            handles[exhibit].position = (figure.x, figure.y, figure.z)
+            handles[exhibit].wxyz = about_y(math.radians(figure.facing))
+
+    def _add(self, scene: viser.SceneApi, figure: Figure) -> viser.GlbHandle:
+        model = self.pieces.stand_in(figure.hall)
+        handle = scene.add_glb(node_name(figure.id), model, cast_shadow=False, receive_shadow=False)
+        if figure.id in self._clickable:
             handle.on_click(lambda event, exhibit=figure.id: self._clicked(event, exhibit))
+        return handle
 
     def _clicked(self, event: Any, exhibit: str) -> None:
         if event.client_id is not None:
@@ -159,7 +188,7 @@ class HallScene:
 
     def nodes(self) -> list[str]:
         """Names of all nodes a page waits for."""
-        return ["/room", *(node_name(exhibit) for exhibit in self._figures)]
+        return ["/room", *(node_name(one.id) for one in self._figures.values() if one.first)]
 
     # What a behaviour may ask for (show.Figures).
 

@@ -138,6 +138,7 @@ def _pack_first_view(pieces: Pieces) -> None:
     for coding in ("zstd", "gzip"):
         viser_client().script.coded(coding)
     _begin_pack(pieces, pack)
+    pieces.make_later()
 
 
 def _begin_pack(pieces: Pieces, pack: str) -> None:

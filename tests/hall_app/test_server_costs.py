@@ -271,6 +271,20 @@ def test_what_is_shown_is_kept_and_other_models_make_room(monkeypatch):
         pieces.lean(message_at(2.5, first))
 
 
+def test_what_comes_after_the_first_view_is_in_no_pack_and_is_kept(monkeypatch):
+    pieces, near, far = Pieces(), noise(1, 60_000), noise(2, 60_000)
+    pieces.show("near", near)
+    name, _ = pieces.plan_pack()
+    mark = pieces.show("far", far, first=False)
+    assert pieces.plan_pack()[0] == name
+    monkeypatch.setattr(scene, "KEPT", 100_000)
+    pieces.stand_in(noise(3, 90_000))
+    lean = pieces.lean(message_at(2.5, mark))
+    assert whole(lean, pieces) == body_of(message_at(2.5, far))
+    pieces.show("far", far)
+    assert pieces.plan_pack()[0] != name, "a curator moved it ahead"
+
+
 def test_a_message_in_another_shape_travels_whole_and_is_said_once(caplog):
     pieces, strange = Pieces(), message_of({"texts": "x" * 9}) + os.urandom(100_000)
     odd = strange[:8] + (1 << 62).to_bytes(8, "little") + os.urandom(100_000)

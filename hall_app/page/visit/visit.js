@@ -6,7 +6,7 @@ import { createClips } from "../look/clip/clips.js";
 import { createCloseup } from "../look/closeup.js";
 import { createGaze } from "../look/gaze.js";
 import { createGlow } from "../look/glow.js";
-import { requestRender } from "../viser/viser_adapter.js";
+import { meshesOf, requestRender } from "../viser/viser_adapter.js";
 import { createKeys } from "../walk/keys.js";
 import { fetchJson, loadClearance } from "./loading.js";
 import { createMark } from "./mark.js";
@@ -225,6 +225,8 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     ui.pose({ x: walk.pose.x, z: walk.pose.z, yaw: gaze.yaw });
   }
 
+  const nodes = () => scene.exhibits.map(({ id }) => `${EXHIBITS}${id}`);
+
   let last = performance.now(), ordinary = 0, drawn = "", settleUntil = Infinity;
   function frame(now) {
     const passed = (now - last) / 1000;
@@ -234,13 +236,13 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     spot.note(now);
     if (walking()) step(dt, now);
     if (display !== "page") return;
-    clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened, compared);
+    if (settleUntil < Infinity) clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened, compared); // after the first view
     points.frame(clips.shown(exhibitOf(opened) ?? {}));
     if (opened) return;
     camera.holdGestures();
     camera.fitLens();
     turning.frame(dt, scene, { ...walk.pose, yaw: gaze.yaw });
-    glow.frame(now, scene.nodes.filter((name) => name.startsWith(EXHIBITS)));
+    glow.frame(now, nodes());
     const view = [walk.pose.x, walk.pose.z, gaze.eye, gaze.yaw, gaze.pitch].map((v) => v.toFixed(5)).join();
     // viser's controls begin anew after a lost connection, wherever they like.
     if (view === drawn && now >= settleUntil && camera.standsAt(walk.pose.x, walk.pose.z)) return;
@@ -253,6 +255,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     frame,
     /** The hall stands: hold our camera a little longer, then only where it moves. */
     settle() {
+      walk.stands();
       settleUntil = performance.now() + SETTLE;
       wake(SETTLE);
       ui.pose({ x: walk.pose.x, z: walk.pose.z, yaw: gaze.yaw });
@@ -283,6 +286,8 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     near: () => near,
     compares: () => compared !== null,
     closeupAt: closeup.drawnAt,
+    /** Whether what is not in the first view is there, too. */
+    whole: () => nodes().every((node) => meshesOf(node).length > 0),
     playing: clips.playing,
   };
 }

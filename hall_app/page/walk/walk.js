@@ -22,6 +22,7 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
   let socket = null, mode = "server", prediction = null;
   let held = new Held();
   let arrived = false, sinceSent = 0, walking = false, greeted = false, asked = false, waiting = false, introduced = false;
+  let stood = false;
 
   function send(message) {
     const ready = socket?.readyState === WebSocket.OPEN && (greeted || message.t === "hello");
@@ -47,6 +48,7 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
       prediction = mode === "predict" && grid ? new Prediction(grid, { ...options, x: message.x, z: message.z }, clock()) : null;
       on.moved({ ...message, first: !arrived });
       arrived = true;
+      if (stood) send({ t: "stands" });
     },
     moved(message) {
       prediction?.moved(message.x, message.z);
@@ -152,6 +154,11 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
     /** Nothing is held any more, and no frame will say so: tell the server now. */
     stand(yaw, eye) { tell(0, 0, yaw, eye); },
     send,
+    /** The first view is there: what else the hall holds may come. */
+    stands() {
+      stood = true;
+      send({ t: "stands" });
+    },
     /** The floor has changed; without a grid of it the old one serves, and the server corrects. */
     change(next) {
       grid = next ?? grid;

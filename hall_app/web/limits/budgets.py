@@ -51,6 +51,7 @@ WALK: Mapping[str, Rate] = {
     "close": Rate(20, 2),
     "compare": Rate(10, 1),
     "client": Rate(8, 1),
+    "stands": Rate(8, 1),
     "other": Rate(30, 2),
 }
 

@@ -32,7 +32,9 @@ _LONGEST_PAGE = 64  # characters
 _UNSUPPORTED = 1003
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
-_KINDS = frozenset({"keys", "goto", "open", "close", "compare", "client"})  # and "in", paid by the input
+_KINDS = frozenset(
+    {"keys", "goto", "open", "close", "compare", "client", "stands"}
+)  # and "in", paid by the input
 
 
 def add_walk_socket(app: FastAPI, house: House, views: Views, addresses: Addresses) -> None:
@@ -242,6 +244,7 @@ class _Visit:
             "open": self._open,
             "compare": lambda message: self.house.stage.compare(self.visitor, message.get("on") is True),
             "client": self._client,
+            "stands": self._stands,
             "close": lambda message: self.house.stage.close(self.visitor),
         }
         while True:
@@ -272,9 +275,19 @@ class _Visit:
         if client == self.visitor.client:
             return
         self.visitor.client = client
+        self._bring()
         if self.visitor.opened is not None:
             opened, self.visitor.opened = self.visitor.opened, None
             self.house.stage.open(self.visitor, opened)
+
+    def _stands(self, message: dict[str, Any]) -> None:
+        """The page shows its first view: what was not in that may come."""
+        self.visitor.stands = True
+        self._bring()
+
+    def _bring(self) -> None:
+        if self.visitor.stands:
+            self.house.scene.bring(self.visitor.client)
 
     def _open(self, message: dict[str, Any]) -> None:
         exhibit = message.get("id")
