@@ -26,6 +26,15 @@ COUNTABLE = {
     "with a dot between": '<path stroke-dasharray="9 3 1 3" d="M0 0h9" />',
     "dots": '<path stroke-dasharray="0 4" d="M0 0h9" />',
     "none of any length": '<path stroke-dasharray="0 0" d="M0 0h1e9" />',
+    "far from the middle": '<path stroke-dasharray="5 5" d="M 500000 -4500000 h 100" />'
+    * 9
+    + '<line stroke-dasharray="5 5" x1="500000" x2="500100" y1="-4500000" y2="-4500000" />'
+    '<rect stroke-dasharray="5 5" x="500000" width="9" height="9" />',
+    "beside what is used enlarged": f'<path {NARROW} stroke-dasharray="4 2" d="M0 0h9" /><path id="i" d="M0 0h1" />'
+    '<use href="#i" transform="scale(2)" />',
+    "short ones along a short line": '<path stroke-dasharray=".01 .01" d="M0 0h2" />'
+    '<path stroke-dasharray="20 10" d="M0 0h2000000" />',
+    "of a wide line": '<path stroke-width="3" stroke-dasharray=".2 .2" d="M0 0h9" />',
     "of letters' measure": '<rect width="8em" height="1em" stroke-dasharray="40" />',
     "long": '<path stroke-dasharray="4 2" d="M0 0%s" />' % ("L100 100" * 900),
 }
@@ -66,7 +75,10 @@ COUNTLESS = {
     "short beside a long gap, used": f'<path id="a" stroke-dasharray="{MEAN}" d="M0 0H989"/>'
     + '<use href="#a"/>' * 14_000,
     "without any length, with a gap": '<path stroke-dasharray="0 0 0 9" d="M0 0h9"/>',
+    "wider than long": '<path d="M0 500h1000" stroke-width="1000" stroke-dasharray=".05"/>',
+    "of a width that is handed down": '<g stroke-width="50%"><path d="M0 500h1000" stroke-dasharray="9"/></g>',
     "along letters": '<text stroke-dasharray=".001" font-size="1000">%s</text>' % ("a" * 99),
+    "handed to what is used": '<path id="a" d="M0 0h9999"/><g stroke-dasharray=".0001"><use href="#a"/></g>',
     "along letters of a size that is handed down": '<g font-size="10em"><text stroke-dasharray=".01">%s</text></g>'
     % ("a" * 99),
     "along a line below letters": '<text style="text-decoration:underline" stroke-dasharray="1">a</text>',
@@ -88,11 +100,18 @@ def test_where_dashes_are_countless_there_are_none(case):
     assert "non-scaling-stroke" in body or NARROW not in COUNTLESS[case]
 
 
-def test_a_small_root_enlarges_all_it_holds():
+ROOTS = {
+    b'width="9" height="9"': True,
+    b'width=".00001" height=".00001"': False,
+    b'viewBox="0 0 4000" width=".00001" height="1"': False,
+}
+
+
+@pytest.mark.parametrize("root", ROOTS)
+def test_a_small_root_enlarges_all_it_holds(root):
     line = f'<path {NARROW} stroke-dasharray="1" d="M0 0h9"/>'
-    for root, dashed in ((b'width="9" height="9"', True), (b'width=".00001" height=".00001"', False)):
-        data = drawing(line.encode()).replace(b'viewBox="0 0 9 9"', root)
-        assert (b"dash" in taken(data).data) is dashed
+    data = drawing(line.encode()).replace(b'viewBox="0 0 9 9"', root)
+    assert (b"dash" in taken(data).data) is ROOTS[root]
 
 
 def test_without_dashes_a_drawing_may_still_draw_too_much():

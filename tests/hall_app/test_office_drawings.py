@@ -110,6 +110,13 @@ LEFT_OUT = {
     '<text dx="1">a<i/>b<i/>c<tspan>d</tspan>e<i/>f</text>': '<text dx="1">abc<tspan>d</tspan>ef</text>',
     '<path stroke-dasharray="%s"/>' % ("1 " * 2_000): "<path />",
     '<path style="fill:\\&#10;;stroke:red"/>': '<path style="stroke:red" />',
+    '<path style="fill:red;fill:;stroke:tan"/>': '<path style="fill:red;stroke:tan" />',
+    '<rect style="mask:url(#m),url(#m);clip-path:url(#m)"/>': '<rect style="clip-path:url(#m)" />',
+    "<text>a&#13;b</text>": "<text>a\nb</text>",
+    '<style>@font-face{src:url("data:font/woff2;base64,AA") format("a")}rect{fill:red}</style><rect/>': (
+        f'{ONE % "fill:red"}<rect class="c1" />'
+    ),
+    '<rect font-family="url(#a)" style="color:url(#a);stroke:url(#a)"/>': '<rect style="stroke:url(#a)" />',
     '<path style="font-family:a\\ ;stroke:red"/>': '<path style="font-family:a\\ ;stroke:red" />',
     "<style>path{fill:\\\n} rect{stroke:red}</style><path/><rect/>": f'{ONE % "stroke:red"}<path /><rect class="c1" />',
     '<e:note xmlns:e="urn:editor" e:by="me"/><path xmlns:e="urn:editor" e:at="home" d="M0 0"/>': '<path d="M0 0" />',
@@ -192,7 +199,7 @@ ENDLESS = {
     % (b"<path/>" * 900, b"z" * 40_000),
     "gradients of nothing": b'<linearGradient id="a"/><style>rect{fill:%s}</style>%s'
     % (b"url(#a)" * 285, b"<rect/>" * 8_000),
-    "masks of leaves": b'<mask id="m"/>' + b'<rect mask="url(#m)"/>' * 9_999,
+    "masks of leaves": b'<mask id="m"/>' + b'<rect mask="url(#m)"/>' * 300,
     "letters that clip": b'<clipPath id="c"><text>a</text></clipPath>'
     + b'<rect clip-path="url(#c)"/>' * 9_999,
     "paint that markers take over": b'<pattern id="p">%s</pattern><marker id="m">%s</marker>%s'
@@ -218,6 +225,7 @@ def test_little_text_does_not_draw_without_end(case):
     assert refused.value.key == "file-svg-drawn"
 
 
+HANDED = b"fill stroke marker marker-start marker-mid marker-end".split()
 RULE = b";".join(b"%s:a;%s:a!important" % (key, key) for key in SAID * 9)
 # What took minutes to days, or gigabytes.
 SLOW = {
@@ -266,6 +274,16 @@ SLOW = {
         b"</g>" * 115,
         b"".join(b'<use href="#a%d"/>' % n for n in range(9_000)),
     ),
+    "paints handed down far": b"<style>.a{%s}</style><g>%s</g><linearGradient id='z'/>%s%s%s"
+    % (
+        b";".join(b"%s:url(#z);%s:url(#z)!important" % (key, key) for key in HANDED),
+        b"".join(b'<use href="#a%d"/>' % n for n in range(9_000)),
+        b'<g class="a">' * 110,
+        b"".join(b'<path id="a%d"/>' % n for n in range(9_000)),
+        b"</g>" * 110,
+    ),
+    "references of many": b"<style>*{%s}</style>%s"
+    % (b";".join(b"%s:url(#a);%s:url(#a)!important" % (key, key) for key in SAID), b"<g/>" * 40_000),
     "names": b"".join(b"<n%s%d/>" % (b"o" * 2_000, n) for n in range(1_500)),
 }
 
@@ -366,6 +384,25 @@ def test_other_encodings_are_read(encoding):
 def test_a_prefix_and_a_long_head_are_no_hindrance():
     prefixed = drawing(b"<s:path/>", root=b"s:svg").replace(b"xmlns=", b"xmlns:s=")
     assert b"<path />" in taken(b"<!-- " + b"by me " * 999 + b"-->" + prefixed).data
+
+
+def test_pictures_that_lie_beside_the_file_are_no_pictures_within():
+    linked = "".join(f'<image href="icon{n}.svg"/>' for n in range(300))
+    tiny = base64.b64encode(png_of(2, 2, 2)).decode()
+    body, told = kept(f'{linked}<image href="data:image/png;base64,{tiny}"/>')
+    assert told.endswith("image 300")
+    assert body.count("<image") == 1
+
+
+def test_few_bytes_that_hold_a_large_picture_are_read_beside(monkeypatch):
+    source = io.BytesIO()
+    Image.new("RGBA", (2_000, 2_000)).save(source, "WEBP", lossless=True)
+    one = drawing(b'<image href="data:image/webp;base64,%s"/>' % base64.b64encode(source.getvalue()))
+    assert len(one) < 1_000
+    monkeypatch.setattr(intake, "_DRAWN_WITHIN", 0.01)
+    with pytest.raises(PeopleError) as refused:
+        taken(one)
+    assert refused.value.key == "file-svg-drawn"
 
 
 def test_names_of_entities_are_counted_as_they_are_written():

@@ -5,7 +5,9 @@ Drawings are written anew (`drawing`). Film and sound are decoded, and kept with
 
 from __future__ import annotations
 
+import contextlib
 import io
+import math
 import re
 import tempfile
 import threading
@@ -17,7 +19,7 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO, TypeVar
 
 from hall_app.content.models.glb import GlbError, read_glb
-from hall_app.content.models.pictures import in_eight_bits
+from hall_app.content.models.pictures import in_eight_bits, picture_size
 from hall_app.house.beside import beside
 from hall_app.house.drafts.drawing import redrawn
 from hall_app.house.people import PeopleError
@@ -50,6 +52,7 @@ USES: Mapping[str, tuple[str, ...]] = {
 }
 _WITHIN = 90.0  # [s] that film or sound may take to be read, and encoded where it has to be
 _AT_ONCE = 200_000  # [bytes] of a drawing that is written anew within a second
+_PIXELS_AT_ONCE = 2_000_000  # of all pictures in it
 _DRAWN_WITHIN = 60.0  # [s] that a larger one may take
 _READING = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF")
@@ -202,10 +205,24 @@ def _model(shown: str, data: bytes) -> str:
     return f"{info.triangles} △ · {size} m · {len(data) / MB:.2f} MB"
 
 
+class _LargerError(Exception):
+    """Few bytes, but pictures of many pixels."""
+
+
 def _drawing(shown: str, data: bytes) -> tuple[bytes, str]:
     """Written anew; a large one where it holds nobody up. Raises PeopleError."""
+    left = _PIXELS_AT_ONCE
+
+    def small(name: str, given: bytes) -> tuple[bytes, str, str]:
+        nonlocal left
+        left -= math.prod(picture_size(given))
+        if left < 0:
+            raise _LargerError
+        return _picture(name, given)
+
     if len(data) <= _AT_ONCE:
-        return redrawn(shown, data, _picture, LARGEST["drawing"])
+        with contextlib.suppress(_LargerError):
+            return redrawn(shown, data, small, LARGEST["drawing"])
     late = PeopleError("file-svg-drawn", name=shown)
     return _read_beside(shown, late, _DRAWN_WITHIN, _redrawn, shown, data)
 

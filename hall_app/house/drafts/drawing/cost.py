@@ -6,7 +6,8 @@ corners they stand at, by masks and clips; long lines, texts, dashes and see-thr
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 from hall_app.house.drafts.drawing.dashes import Told, dashes_along
@@ -18,14 +19,15 @@ __all__ = ["MOST_DEEP", "MOST_DRAWN", "draws_too_much"]
 MOST_DEEP = 120
 MOST_DRAWN = 100_000
 _LINE, _LETTERS, _DASHES = 128, 8, 64  # characters of a path, letters and dashes: one more element
-_LAYER = 40  # what a group counts that is drawn by itself before it is laid over what is below
+# What a group counts that is drawn by itself before it is laid over what is below, and what hides parts of it.
+_LAYER, _MASK = 100, 400
 _STOPS = 8  # of a gradient, that count as an element for each that it paints
 
 _GRADIENTS = frozenset(("linearGradient", "radialGradient"))
 _PAINTS = frozenset(("fill", "stroke"))
 _MARKERS = frozenset(("marker", "marker-start", "marker-mid", "marker-end"))
 _HANDED = _PAINTS | _MARKERS  # down to all that is below
-_PLAIN = {"mix-blend-mode": "normal", "isolation": "auto", "mask": "none"}
+_PLAIN = {"mix-blend-mode": "normal", "isolation": "auto"}
 
 
 @dataclass(frozen=True)
@@ -45,10 +47,27 @@ class _Drawn:
 _ONE = _Drawn(1, 1, 1)
 
 
-def draws_too_much(root: Element, told: Told) -> bool:
-    """Whether it draws more than MOST_DRAWN elements, or in a circle. told: of elements that anything is said of."""
+@dataclass(frozen=True)
+class _Paints:
+    """What paints and markers draw for each element, at each corner and at each line's ends."""
+
+    areas: int = 0
+    corners: int = 0
+    ends: int = 0
+
+    def more(self, key: str, cost: int) -> _Paints:
+        if key in _PAINTS:
+            return replace(self, areas=self.areas + cost)
+        if key in ("marker", "marker-mid"):
+            return replace(self, corners=self.corners + cost)
+        return replace(self, ends=self.ends + cost)
+
+
+def draws_too_much(root: Element, told: Told, *, dashes: bool) -> bool:
+    """Whether it draws more than MOST_DRAWN elements, or in a circle. told: of elements that anything is said of;
+    dashes: whether they count."""
     try:
-        return _Counting(root, told).of(root).cost > MOST_DRAWN
+        return _Counting(root, told, dashes_along(root, told) if dashes else {}).of(root).cost > MOST_DRAWN
     except _Endless:
         return True
 
@@ -58,19 +77,19 @@ class _Endless(Exception):
 
 
 class _Counting:
-    def __init__(self, root: Element, told: Told) -> None:
-        self._told = told
+    def __init__(self, root: Element, told: Told, dashes: Mapping[Element, float]) -> None:
+        self._told, self._dashes = told, dashes
         self._by_id: dict[str, Element] = {}
         for one in root.iter():
             self._by_id.setdefault(one.get("id", ""), one)  # of two of one name browsers take the first
         self._above = {child: one for one in root.iter() for child in one}
         self._named: dict[tuple[bool, str], tuple[Element, ...]] = {}  # by what refers to them
         self._cutting: dict[Element, bool] = {}
-        self._dashes = dashes_along(root, told)
         self._within: set[Element] = set()
         self._known: dict[Element, _Drawn] = {}
         self._elsewhere: dict[Element, _Drawn | None] = {}
         self._costs: dict[str, int] = {}  # of values
+        self._hands: dict[Element, _Paints] = {}
         self._handing: dict[Element | None, tuple[Element, ...]] = {None: ()}
         # The most that a paint draws which markers take over from the line they stand at.
         self._taken_over = 0
@@ -88,11 +107,13 @@ class _Counting:
         drawn = self._alone(element)
         for child in element:
             drawn += self.of(child)
+            if drawn.cost > MOST_DRAWN:
+                raise _Endless
         said = self._told.get(element, [])
         for one in self._targets("href", element.get("href", "")):
             drawn += self._called(one)
         drawn += _Drawn(cost=sum(self._paint(key, value, drawn) for key, value in said))
-        drawn += _Drawn(cost=_LAYER * sum(self._is_layer(element, *one) for one in said))
+        drawn += _Drawn(cost=sum(self._layer(element, *one) for one in said))
         if drawn.cost > MOST_DRAWN:  # and so does all that it lies in
             raise _Endless
         self._within.discard(element)
@@ -107,14 +128,13 @@ class _Counting:
         return _Drawn(own, corners(element), own)
 
     def _paint(self, key: str, value: str, below: _Drawn) -> int:
-        if not (cost := self._once(key, value)):
-            return 0
-        if key in _PAINTS:
-            return cost * below.elements
-        if key in _MARKERS:
-            places = below.corners if key in ("marker", "marker-mid") else 2 * below.elements
-            return cost * max(1, places) * (1 + self._taken_over)
-        return cost
+        if key in _HANDED:
+            return self._painted(_Paints().more(key, self._once(key, value)), below)
+        return self._once(key, value)
+
+    def _painted(self, paints: _Paints, below: _Drawn) -> int:
+        places = paints.corners * max(1, below.corners) + paints.ends * max(1, 2 * below.elements)
+        return paints.areas * below.elements + places * (1 + self._taken_over)
 
     def _once(self, key: str, value: str) -> int:
         """What a value draws where it is asked for once; programs say the same of many elements."""
@@ -137,10 +157,19 @@ class _Counting:
         drawn = self.of(target)
         for above in () if target.tag in _GRADIENTS else self._above_with_paint(target):
             if above not in self._within:
-                handed = [said for said in self._told[above] if said[0] in _HANDED]
-                drawn += _Drawn(cost=sum(self._paint(*said, drawn) for said in handed))
+                drawn += _Drawn(cost=self._painted(self._handed(above), drawn))
         self._elsewhere[target] = drawn
         return drawn
+
+    def _handed(self, above: Element) -> _Paints:
+        """What it hands down; of many elements, once."""
+        if (paints := self._hands.get(above)) is None:
+            paints = _Paints()
+            for key, value in self._told[above]:
+                if key in _HANDED:
+                    paints = paints.more(key, self._once(key, value))
+            self._hands[above] = paints
+        return paints
 
     def _above_with_paint(self, element: Element) -> tuple[Element, ...]:
         """What it lies in that hands any paint or marker of the file down."""
@@ -152,13 +181,16 @@ class _Counting:
             self._handing[above] = (*((above,) if hands else ()), *self._above_with_paint(above))
         return self._handing[above]
 
-    def _is_layer(self, element: Element, key: str, value: str) -> bool:
-        """Whether the element is drawn by itself before it is laid over what is below."""
+    def _layer(self, element: Element, key: str, value: str) -> int:
+        """What it counts that the element is drawn by itself before it is laid over what is below."""
         if key == "opacity":
-            return value not in ("1", "1.0", "100%") and (len(element) > 0 or element.tag == "use")
+            together = len(element) > 0 or element.tag == "use"
+            return _LAYER if together and value not in ("1", "1.0", "100%") else 0
         if key == "clip-path":
-            return any(map(self._cuts, self._targets(key, value)))
-        return key in _PLAIN and value != _PLAIN[key]
+            return _LAYER if any(map(self._cuts, self._targets(key, value))) else 0
+        if key == "mask":
+            return _MASK if value != "none" else 0
+        return _LAYER if key in _PLAIN and value != _PLAIN[key] else 0
 
     def _cuts(self, clip: Element) -> bool:
         """Whether it is drawn by itself; others cut a shape as that is drawn: not letters, and what is cut itself."""

@@ -21,7 +21,7 @@ import tinycss2
 
 from hall_app.content.models import PictureError, picture_size
 from hall_app.house.drafts.drawing.cost import MOST_DEEP, draws_too_much
-from hall_app.house.drafts.drawing.dashes import Told, shortest_dash
+from hall_app.house.drafts.drawing.dashes import Told, dashed
 from hall_app.house.drafts.drawing.sheets import TooMuch, told_by_sheets
 from hall_app.house.drafts.drawing.styles import (
     LONGEST_VALUE,
@@ -88,13 +88,11 @@ def redrawn(
     cleaning = _Cleaning(name, picture, most)
     try:
         root, sheet, said = cleaning.cleaned(tree)
-        much = draws_too_much(root, said)
-        if much and shortest_dash(said):
-            cleaning = cleaning.without(_DASHES)
-            root, sheet, said = cleaning.cleaned(tree)
-            much = draws_too_much(root, said)
-        if much:
+        if draws_too_much(root, said, dashes=False):
             raise TooMuch
+        if dashed(said) and draws_too_much(root, said, dashes=True):
+            cleaning = cleaning.without(_DASHES)
+            root, sheet, _ = cleaning.cleaned(tree)
     except PeopleError:
         raise
     except (TooMuch, RecursionError):  # what nests in styles is followed as it nests
@@ -204,13 +202,14 @@ class _Cleaning:
     styled: int = 0
     pictures: dict[str, str | None] = field(default_factory=dict)
     pixels: int = 0
+    drawn: int = 0  # pictures
     embedded: int = 0  # characters of pictures, each as often as it is written
     properties: Set[str] = PROPERTIES  # that are kept
 
     def without(self, key: str) -> _Cleaning:
         """Begun anew, for a file whose pictures are drawn already."""
         fewer = _Cleaning(self.name, self.picture, self.most, properties=self.properties - {key})
-        fewer.pictures, fewer.pixels = self.pictures, self.pixels
+        fewer.pictures, fewer.pixels, fewer.drawn = self.pictures, self.pixels, self.drawn
         return fewer
 
     def cleaned(self, tree: ElementTree.Element) -> tuple[ElementTree.Element, str, Told]:
@@ -328,7 +327,8 @@ class _Cleaning:
             data = base64.b64decode(unquote(given[head.end() :]))
             width, height = picture_size(data)
             self.pixels += width * height
-            if self.pixels > _MOST_PIXELS or len(self.pictures) >= _MOST_PICTURES:
+            self.drawn += 1
+            if self.pixels > _MOST_PIXELS or self.drawn > _MOST_PICTURES:
                 raise PeopleError("file-svg-drawn", name=self.name)
             data, ending, _ = self.picture(self.name, data)
         except PeopleError as error:
@@ -342,7 +342,7 @@ class _Cleaning:
 
 def _speak(made: ElementTree.Element, words: list[str]) -> None:
     """What is said after the last of its children, or before there is any."""
-    said = "".join(words) or None
+    said = "".join(words).replace("\r", "\n") or None  # as it is read again
     if len(made):
         made[-1].tail = said
     else:

@@ -19,8 +19,8 @@ _ARC = re.compile(
 _COMMAND = re.compile(r"([a-z])([^a-df-z]*)", re.IGNORECASE)
 _PAIRS = {"q": 2, "s": 2, "c": 3}  # of a segment's numbers
 
-_SIDES = "x y x1 y1 x2 y2 cx cy r rx ry width height".split()
-_BY_SIDES = frozenset(("rect", "circle", "ellipse", "line"))
+_SIDES = "r rx ry width height".split()
+_BY_SIDES = frozenset(("rect", "circle", "ellipse"))
 _UNITS = {"": 1.0, "px": 1.0, "pt": 1.4, "pc": 16.0, "mm": 3.8, "cm": 38.0, "in": 96.0}
 # [px] of units that go by the size of letters, which browsers draw no larger than 10,000.
 _UNITS |= dict.fromkeys(("em", "rem", "ex", "ch", "ic", "cap"), 10_000.0)
@@ -65,9 +65,18 @@ def side(text: str, share: float = 0.0) -> float:
 
 def outline(element: Element, of: float) -> float:
     """How long the lines of a shape are at most; 0 for what is none. of: `frame`."""
+    if element.tag == "line":
+        return sum(_apart(element.get(f"{one}1", ""), element.get(f"{one}2", ""), of) for one in "xy")
     if element.tag not in _BY_SIDES:
         return _along(_line(element))
     return 4.0 * sum(side(value, of) for one in _SIDES if (value := element.get(one)))
+
+
+def _apart(begin: str, end: str, of: float) -> float:
+    begin, end = begin.strip() or "0", end.strip() or "0"
+    if NUMBER.fullmatch(begin) and NUMBER.fullmatch(end):
+        return abs(float(end) - float(begin))
+    return side(begin, of) + side(end, of)
 
 
 def _line(element: Element) -> str:
@@ -121,7 +130,8 @@ def _along(path: str) -> float:
                 last_x, last_y = x, y
                 for pair in range(k, k + step, 2):
                     new_x, new_y = found[pair] + x * relative, found[pair + 1] + y * relative
-                    total += 2.0 * hypot(new_x - last_x, new_y - last_y)
+                    moved = kind == "m" and k == 0  # there draws nothing
+                    total += 0.0 if moved else 2.0 * hypot(new_x - last_x, new_y - last_y)
                     if kind == "q" and pair == k:
                         bent_x, bent_y = new_x, new_y
                     last_x, last_y = new_x, new_y

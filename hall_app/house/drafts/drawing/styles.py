@@ -35,7 +35,7 @@ PROPERTIES = frozenset(
     "alignment-baseline background background-color baseline-shift clip-path clip-rule color color-interpolation "
     "color-rendering direction "
     "display dominant-baseline fill fill-opacity fill-rule font font-family font-feature-settings font-kerning "
-    "font-size font-size-adjust font-stretch font-style font-variant font-variant-caps font-variant-east-asian "
+    "font-size font-stretch font-style font-variant font-variant-caps font-variant-east-asian "
     "font-variant-ligatures font-variant-numeric font-variation-settings font-weight image-rendering isolation "
     "letter-spacing line-height marker marker-end marker-mid marker-start mask mask-type mix-blend-mode opacity "
     "overflow paint-order shape-rendering stop-color stop-opacity stroke stroke-dasharray stroke-dashoffset "
@@ -54,15 +54,16 @@ _TOKENS = frozenset(
 _NAMED = re.compile(r"#[^\s'\"()\\%<>;{}]+")
 _LINKED = re.compile(r"#[^\s'\"\\%<>;{}]+")  # by an attribute of its own, which nothing follows
 # Properties that no child takes from its parent: asked for so, each child would draw its parent's target once more.
-_ALONE = frozenset(("clip-path", "mask"))
+_ALONE, _TAKEN = frozenset(("clip-path", "mask")), frozenset(("inherit", "unset", "revert", "revert-layer"))
 _LENGTHS = re.compile(r"([\d.]+(?:e[+-]?\d+)?)(px|pt|pc|mm|cm|in)?", re.IGNORECASE)
 _LEGAL = re.compile(r"[\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]*")  # what XML may hold
 _KEY = re.compile(r"[A-Za-z][A-Za-z-]{0,30}")
 _MOST_KEYS = 200  # that are told of
 LONGEST_VALUE = 2_000
+_REFERRING = frozenset("fill stroke marker marker-start marker-mid marker-end mask clip-path".split())
 _WEIGHTY = frozenset(
-    "stroke-dasharray opacity mix-blend-mode isolation transform vector-effect font font-size text-decoration "
-    "text-decoration-line".split()
+    "stroke-dasharray stroke-width opacity mix-blend-mode isolation transform vector-effect font font-size "
+    "text-decoration text-decoration-line".split()
 )
 # What SVG 2 lets styles say of a shape: left out, since what is drawn is weighed by the attributes.
 _OF_SHAPES = frozenset("cx cy d height r rotate rx ry scale translate width x y".split())
@@ -98,9 +99,10 @@ def clean(name: str, tokens: Iterable[Token]) -> str | None:
     value = tinycss2.serialize(kept)
     if len(value) > LONGEST_VALUE or not _LEGAL.fullmatch(value):
         return None
-    if name.startswith("background") and "url(" in value:  # nothing that draws; a plain colour is seen
+    if "url(" in value and name not in _REFERRING:
         return None
-    if name in _ALONE and value.lower() in ("inherit", "unset", "revert", "revert-layer"):
+    # One mask and one clip: each of a list is drawn as large as what it hides.
+    if name in _ALONE and (value.count("url(") > 1 or value.lower() in _TAKEN):
         return None
     return None if name == "stroke-dasharray" and not _dashes_known(value) else value
 
@@ -118,7 +120,7 @@ def declared(
             drew = one.lower_name in PROPERTIES | _OF_SHAPES or one.lower_name.endswith("filter")
             if drew or any(map(_asks, one.value)):
                 note(left, one.lower_name)
-        elif (value := clean(one.lower_name, one.value)) is None:
+        elif not (value := clean(one.lower_name, one.value)):  # nothing is no value, either
             note(left, one.lower_name)
         else:
             say(said[one.important], one.lower_name, value)
@@ -133,7 +135,11 @@ def written(said: Mapping[str, str], stressed: Mapping[str, str]) -> str:
 
 def weighty(said: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """What of it decides how much is drawn."""
-    return [one for one in said if one[0] in _WEIGHTY or "url(" in one[1] or "context-" in one[1].lower()]
+    return [
+        (key, value)
+        for key, value in said
+        if key in _WEIGHTY or (key in _REFERRING and ("url(" in value or "context-" in value.lower()))
+    ]
 
 
 def say(said: dict[str, str], key: str, value: str) -> None:
