@@ -6,7 +6,7 @@ import io
 import re
 
 from hall_app.house.drafts import Taken, intake, take_in
-from hall_app.house.drafts.drawing import redrawn
+from hall_app.house.drawing import redrawn
 
 __all__ = ["doubled", "drawing", "kept", "read", "taken"]
 

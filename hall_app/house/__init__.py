@@ -2,8 +2,8 @@
 
 background: slow work beside the event loop; beside: work in a process of its own; signals: Ctrl-C at the right moment;
 floor_grid: the clearance grid; baking: what is baked when; people: accounts, roles, the journal; house: content, floor,
-scene and visitors together; edits: shown, baked, tidied up after; drafts: the collection edited; recording: film and
-sound that were brought.
+scene and visitors together; edits: shown, baked, tidied up after; drafts: the collection edited; drawing: pictures
+that were brought; recording: film and sound.
 Names are handed out when they are asked for (PEP 562): a command's --help needs no scene.
 """
 

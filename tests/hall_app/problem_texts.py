@@ -106,11 +106,11 @@ PASSED_ON = {
     ("hall_app/content/models/scans.py", "_standing"),  # of _unit
     ("hall_app/content/models/scans.py", "refuse"),  # of a Finding
     ("hall_app/content/schema/complaints.py", "_problem"),  # of pydantic, and of REMEDIES
-    ("hall_app/house/drafts/drawing/elements.py", "_tree"),
-    ("hall_app/house/drafts/drawing/elements.py", "redrawn"),
     ("hall_app/house/drafts/intake.py", "_model"),  # of a GlbError
-    ("hall_app/house/drafts/intake.py", "_picture"),  # of Pillow
     ("hall_app/house/drafts/publication.py", "_put"),  # of the system
+    ("hall_app/house/drawing/elements.py", "_tree"),
+    ("hall_app/house/drawing/elements.py", "redrawn"),
+    ("hall_app/house/drawing/raster.py", "drawn_anew"),  # of Pillow
     ("hall_app/house/house.py", "problems"),  # of the survey's Problem
     ("hall_app/house/house.py", "room_problems"),  # of MissingFontError
     ("hall_app/media/make.py", "make_media"),

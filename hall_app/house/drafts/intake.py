@@ -6,22 +6,20 @@ Drawings are written anew (`drawing`). Film and sound are decoded, and kept with
 from __future__ import annotations
 
 import contextlib
-import io
 import math
 import re
 import tempfile
 import threading
 import unicodedata
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import BinaryIO, TypeVar
 
 from hall_app.content.models.glb import GlbError, read_glb
-from hall_app.content.models.pictures import in_eight_bits, picture_size
+from hall_app.content.models.pictures import picture_size
 from hall_app.house.beside import beside
-from hall_app.house.drafts.drawing import redrawn
+from hall_app.house.drawing import drawn_anew, redrawn, redrawn_or_refused
 from hall_app.house.people import PeopleError
 from hall_app.house.recording import Refused, keep
 
@@ -37,9 +35,6 @@ LARGEST: Mapping[str, int] = {
     "film": 10 * MB,
     "sound": 10 * MB,
 }
-_PIXELS = 60_000_000  # of a picture that is decoded
-_EDGE = 3000  # [pixels] of a picture's longer side, as it is kept
-_LINE_ART = 1_500_000  # [bytes] up to which a PNG stays one
 
 # What a file may be used for, and the kinds that serve.
 USES: Mapping[str, tuple[str, ...]] = {
@@ -55,7 +50,6 @@ _AT_ONCE = 200_000  # [bytes] of a drawing that is written anew within a second
 _PIXELS_AT_ONCE = 2_000_000  # of all pictures in it
 _DRAWN_WITHIN = 60.0  # [s] that a larger one may take
 _READING = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
-_FORMATS = ("JPEG", "PNG", "WEBP", "TIFF")
 _ARCHIVES = (
     b"PK\x03\x04",
     b"PK\x05\x06",
@@ -96,7 +90,7 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     if ending == ".svg":
         data, told = _drawing(shown, data)
     elif kind == "picture":
-        data, ending, told = _picture(shown, data)
+        data, ending, told = drawn_anew(shown, data)
     elif ending == ".glb":
         told = _model(shown, data)
     elif kind in ("film", "sound"):
@@ -142,54 +136,6 @@ def _kind(shown: str, head: bytes, use: str) -> tuple[str, str]:
     raise PeopleError("file-kind", name=shown)
 
 
-def _picture(shown: str, data: bytes) -> tuple[bytes, str, str]:
-    """Drawn anew: nothing of the file's own bytes is kept. Raises PeopleError."""
-    from PIL import Image, ImageOps
-
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(io.BytesIO(data), formats=_FORMATS) as source:
-                if source.width * source.height > _PIXELS:
-                    raise PeopleError("file-pixels", name=shown, most=_PIXELS // 1_000_000)
-                line_art = source.format == "PNG"
-                source.load()
-                picture = _in_srgb(ImageOps.exif_transpose(source))
-        picture.thumbnail((_EDGE, _EDGE))
-        sheer = picture.mode == "RGBA"
-        drawn, ending = io.BytesIO(), ".png"
-        if line_art:
-            picture.save(drawn, "PNG", optimize=True)
-        if not line_art or drawn.tell() > _LINE_ART:
-            drawn, ending = io.BytesIO(), ".webp" if sheer else ".jpg"
-            picture.save(drawn, "WEBP" if sheer else "JPEG", quality=88)
-    except PeopleError:
-        raise
-    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
-        raise PeopleError("file-pixels", name=shown, most=_PIXELS // 1_000_000) from None
-    except Exception as error:  # a decoder of foreign files may fail in any way
-        raise PeopleError("file-broken", name=shown, why=_first(error)) from None
-    return drawn.getvalue(), ending, f"{picture.width} × {picture.height}"
-
-
-def _in_srgb(source):
-    """Colours as every browser shows them, without the file's own profile."""
-    from PIL import Image, ImageCms
-
-    mode = "RGBA" if source.mode in ("RGBA", "LA", "PA") or "transparency" in source.info else "RGB"
-    profile, picture = source.info.get("icc_profile"), in_eight_bits(source).convert(mode)
-    if profile and source.mode in ("RGB", "RGBA"):
-        try:
-            own = ImageCms.ImageCmsProfile(io.BytesIO(profile))
-            srgb = ImageCms.createProfile("sRGB")
-            picture = ImageCms.profileToProfile(picture, own, srgb, outputMode=mode) or picture
-        except (ImageCms.PyCMSError, OSError, ValueError):
-            pass  # a profile that nobody can read says nothing
-    plain = Image.new(mode, picture.size)
-    plain.paste(picture)
-    return plain
-
-
 def _model(shown: str, data: bytes) -> str:
     """Raises PeopleError for a GLB that the hall cannot draw, or that holds more than it says."""
     if int.from_bytes(data[8:12], "little") != len(data):
@@ -218,20 +164,13 @@ def _drawing(shown: str, data: bytes) -> tuple[bytes, str]:
         left -= math.prod(picture_size(given))
         if left < 0:
             raise _LargerError
-        return _picture(name, given)
+        return drawn_anew(name, given)
 
     if len(data) <= _AT_ONCE:
         with contextlib.suppress(_LargerError):
             return redrawn(shown, data, small, LARGEST["drawing"])
     late = PeopleError("file-svg-drawn", name=shown)
-    return _read_beside(shown, late, _DRAWN_WITHIN, _redrawn, shown, data)
-
-
-def _redrawn(shown: str, data: bytes) -> tuple[bytes, str] | Refused:
-    try:
-        return redrawn(shown, data, _picture, LARGEST["drawing"])
-    except PeopleError as error:
-        return Refused(error.key, error.figures)
+    return _read_beside(shown, late, _DRAWN_WITHIN, redrawn_or_refused, shown, data, LARGEST["drawing"])
 
 
 def _recording(shown: str, data: bytes, ending: str, kind: str) -> tuple[bytes, str, str]:
@@ -268,7 +207,3 @@ def _safe(name: str, kind: str) -> str:
     stem = PurePosixPath(name.replace("\\", "/").replace("\0", "")).name.partition(".")[0]
     plain = unicodedata.normalize("NFKD", stem).encode("ascii", "ignore").decode().lower()
     return re.sub("[^a-z0-9]+", "-", plain).strip("-")[:40].strip("-") or kind
-
-
-def _first(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0][:120]

@@ -20,10 +20,10 @@ from xml.parsers.expat import ExpatError, ParserCreate
 import tinycss2
 
 from hall_app.content.models import PictureError, picture_size
-from hall_app.house.drafts.drawing.cost import MOST_DEEP, draws_too_much
-from hall_app.house.drafts.drawing.dashes import Told, dashed
-from hall_app.house.drafts.drawing.sheets import TooMuch, told_by_sheets
-from hall_app.house.drafts.drawing.styles import (
+from hall_app.house.drawing.cost import MOST_DEEP, draws_too_much
+from hall_app.house.drawing.dashes import Told, dashed
+from hall_app.house.drawing.sheets import TooMuch, told_by_sheets
+from hall_app.house.drawing.styles import (
     LONGEST_VALUE,
     PROPERTIES,
     clean,

@@ -9,7 +9,7 @@ from functools import cache
 from math import inf, sqrt
 from xml.etree.ElementTree import Element
 
-from hall_app.house.drafts.drawing.outlines import NUMBER, frame, letters, numbers, outline, side
+from hall_app.house.drawing.outlines import NUMBER, frame, letters, numbers, outline, side
 
 __all__ = ["Told", "dashed", "dashes_along"]
 

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 import tinycss2
 
-from hall_app.house.drafts.drawing.styles import PROPERTIES, Token, declared, note, say, weighty, written
+from hall_app.house.drawing.styles import PROPERTIES, Token, declared, note, say, weighty, written
 
 __all__ = ["TooMuch", "told_by_sheets"]
 

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
-from hall_app.house.drafts.drawing.dashes import Told, dashes_along
-from hall_app.house.drafts.drawing.outlines import corners, letters
-from hall_app.house.drafts.drawing.styles import REFERENCE
+from hall_app.house.drawing.dashes import Told, dashes_along
+from hall_app.house.drawing.outlines import corners, letters
+from hall_app.house.drawing.styles import REFERENCE
 
 __all__ = ["MOST_DEEP", "MOST_DRAWN", "draws_too_much"]
 
