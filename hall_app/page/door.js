@@ -7,6 +7,7 @@
   const root = document.documentElement;
   const screen = document.querySelector(".enter"); // kept: whoever is in the hall may still change the language
   const find = (selector) => screen.querySelector(selector);
+  const PIECE_TRIES = 4; // again, after 1, 2, 4 and 8 s
   const SILENCE = 45000; // [ms] without a byte, while some are awaited, that count as a failure
 
   // --- memory and language -------------------------------------------------------------------------------------
@@ -122,7 +123,7 @@
 
   async function ask(url, options) {
     const answer = await fetch(url, options);
-    if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
+    if (!answer.ok) throw Object.assign(new Error(`${url}: ${answer.status}`), { status: answer.status });
     return answer;
   }
 
@@ -191,7 +192,14 @@
   async function piece(name) {
     if (!pieces.has(name) && !settled) await new Promise((tell) => waiting.set(name, tell));
     if (pieces.has(name)) return pieces.get(name).buffer;
-    return (await ask(`${files.models.piece}${name}`)).arrayBuffer();
+    for (let tried = 0; ; tried += 1)
+      try {
+        return await (await ask(`${files.models.piece}${name}`, { priority: "low" })).arrayBuffer();
+      } catch (error) {
+        // Without it the whole scene would begin anew.
+        if (tried === PIECE_TRIES || error.status === 404) throw error;
+        await new Promise((done) => setTimeout(done, 1000 * 2 ** tried));
+      }
   }
 
   function element(tag, attributes, ahead = null) {

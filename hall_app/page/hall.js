@@ -59,7 +59,7 @@ async function start() {
   });
   ui.quality(parts.quality);
   await door.models;
-  await stand(scene, hooks, connection, beat);
+  await stand(parts.visit.awaited, hooks, connection, beat);
   beat.rest();
   parts.visit.settle();
   if (parts.quality?.choice === "auto") firstLook(beat);
@@ -68,13 +68,13 @@ async function start() {
 }
 
 /** Until the hall stands and the visitor is inside. What takes too long is said, and may still come. */
-async function stand(scene, hooks, connection, beat) {
+async function stand(awaited, hooks, connection, beat) {
   function progress(fraction) {
     window.HALL.door.progress("drawing", fraction);
     if (!connection.held()) beat.wake(DRAW_ON); // in the queue there is nothing to draw
   }
   const arrives = hooks
-    ? () => loadHall(scene, progress, connection)
+    ? () => loadHall(awaited, progress, connection)
     : () => until(connection.inside, LOAD_PATIENCE, connection);
   while (!(await arrives())) ui.fail("load");
 }

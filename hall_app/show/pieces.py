@@ -117,6 +117,10 @@ class Pieces:
             (self._later.discard if first else self._later.add)(node)
             return self._shown[node]
 
+    def mark(self, node: str) -> bytes:
+        """The stand-in of what `node` shows."""
+        return self._shown[node]
+
     def hide(self, node: str) -> None:
         """`node` is shown no longer."""
         with self._changing:

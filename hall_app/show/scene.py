@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from hall_app.room.picture.studio import studio_glb
@@ -14,6 +14,8 @@ from hall_app.visit.visitors import Marks, Visitor
 
 if TYPE_CHECKING:
     import viser
+
+    _Owner = viser.ViserServer | viser.ClientHandle  # whoever draws with it: everybody, or one page
 
 __all__ = ["STUDIO", "Figure", "HallScene", "Model"]
 
@@ -47,6 +49,10 @@ class Figure:
     facing: float
     compared: Model | None = None
     first: bool = True
+
+
+def _place(figure: Figure) -> tuple[float, ...]:
+    return figure.x, figure.y, figure.z, figure.facing
 
 
 def node_name(exhibit: str) -> str:
@@ -128,48 +134,64 @@ class HallScene:
         self.server.initial_camera.look_at = (x - math.sin(yaw), eye, z - math.cos(yaw))
 
     def show(self, figures: tuple[Figure, ...], clickable: frozenset[str]) -> None:
-        """Draw these exhibits; what is unchanged stays as it is."""
+        """Draw these exhibits; what is unchanged stays as it is, and of the first view while it stands in the hall."""
         self._clickable = clickable
-        last, self._figures = self._figures, {figure.id: figure for figure in figures}
-        for exhibit in last:
-            if exhibit not in self._figures:
-                self.pieces.hide(node_name(exhibit))
-        changed = {
-            exhibit
-            for exhibit, figure in self._figures.items()
-            if exhibit not in last or (last[exhibit].hall, last[exhibit].first) != (figure.hall, figure.first)
+        last = self._figures
+        self._figures = {
+            one.id: replace(one, first=last[one.id].first) if one.id in last else one for one in figures
         }
-        for exhibit in changed:
-            figure = self._figures[exhibit]
-            self.pieces.show(node_name(exhibit), figure.hall, first=figure.first)
-        self._draw(self.server.scene, self._handles, changed, first=True)
+        for exhibit in last.keys() - self._figures.keys():
+            self.pieces.hide(node_name(exhibit))
+        changed = {one.id for one in figures if one.id not in last or last[one.id].hall != one.hall}
+        moved = {one.id for one in figures if one.id not in last or _place(last[one.id]) != _place(one)}
+        for exhibit, figure in self._figures.items():  # in their order, which names the pack
+            if exhibit in changed:
+                self.pieces.show(node_name(exhibit), figure.hall, first=figure.first)
+        self._draw_again(self.server, self._handles, changed, moved)
         for client_id, client in self.server.get_clients().items():
             if (handles := self._brought.get(client_id)) is not None:
-                self._draw(client.scene, handles, changed, first=False)
+                self._draw_again(client, handles, changed, moved)
+        for exhibit, figure in self._figures.items():
+            if figure.first and exhibit not in self._handles:
+                self._draw(self.server, self._handles, figure)
 
-    def bring(self, client_id: int | None) -> None:
-        """Draw for this page, which stands in the hall, what was not in its first view."""
+    def bring(self, client_id: int | None, x: float, z: float) -> None:
+        """Draw for this page, whose visitor is at (x, z) [m], the nearest of what it lacks; its first view stands.
+
+        One at a time: what a page is told, it takes in order, a close-up after the exhibits that it was told of before.
+        """
         client = None if client_id is None else self.server.get_clients().get(client_id)
-        if client is not None:
-            handles = self._brought.setdefault(client.client_id, {})
-            self._draw(client.scene, handles, set(), first=False)
+        if client is None:
+            return
+        handles = self._brought.setdefault(client.client_id, {})
+        lacking = [one for one in self._figures.values() if not one.first and one.id not in handles]
+        if lacking:
+            self._draw(client, handles, min(lacking, key=lambda one: math.hypot(one.x - x, one.z - z)))
+        if client.client_id not in self.server.get_clients():  # gone meanwhile
+            self._brought.pop(client.client_id, None)
+
+    def _draw_again(
+        self, owner: _Owner, handles: dict[str, viser.GlbHandle], changed: set[str], moved: set[str]
+    ) -> None:
+        """What everybody, or one page, has been shown; what the hall holds no longer is taken away."""
+        for exhibit in tuple(handles):
+            if exhibit not in self._figures:
+                handles.pop(exhibit).remove()
+            elif exhibit in changed or exhibit in moved:
+                self._draw(owner, handles, self._figures[exhibit], anew=exhibit in changed)
 
     def _draw(
-        self, scene: viser.SceneApi, handles: dict[str, viser.GlbHandle], changed: set[str], *, first: bool
+        self, owner: _Owner, handles: dict[str, viser.GlbHandle], figure: Figure, *, anew: bool = True
     ) -> None:
-        """Of all figures those that are, or are not, of the first view."""
-        wanted = {exhibit: figure for exhibit, figure in self._figures.items() if figure.first == first}
-        for gone in handles.keys() - wanted.keys():
-            handles.pop(gone).remove()
-        for exhibit, figure in wanted.items():
-            if exhibit in changed or exhibit not in handles:
-                handles[exhibit] = self._add(scene, figure)
-            handles[exhibit].position = (figure.x, figure.y, figure.z)
-            handles[exhibit].wxyz = about_y(math.radians(figure.facing))
+        with owner.atomic():  # it never stands elsewhere before its place is told
+            if anew:
+                handles[figure.id] = self._add(owner.scene, figure)
+            handles[figure.id].position = (figure.x, figure.y, figure.z)
+            handles[figure.id].wxyz = about_y(math.radians(figure.facing))
 
     def _add(self, scene: viser.SceneApi, figure: Figure) -> viser.GlbHandle:
-        model = self.pieces.stand_in(figure.hall)
-        handle = scene.add_glb(node_name(figure.id), model, cast_shadow=False, receive_shadow=False)
+        node = node_name(figure.id)
+        handle = scene.add_glb(node, self.pieces.mark(node), cast_shadow=False, receive_shadow=False)
         if figure.id in self._clickable:
             handle.on_click(lambda event, exhibit=figure.id: self._clicked(event, exhibit))
         return handle

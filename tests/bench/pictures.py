@@ -136,6 +136,7 @@ def phone(browser, url: str, album: Album) -> None:
     page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=120_000)
     album.shoot(page, "phone-enter")
     page.click("[data-testid=enter]")
+    page.wait_for_function("() => hall.whole()", timeout=120_000)
     album.shoot(page, "phone-hall")
     found = page.evaluate(STANDS)
     exhibit = found["exhibits"][0]

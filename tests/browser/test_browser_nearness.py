@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import shutil
 import struct
+import time
 import urllib.request
 from pathlib import Path
 
 import pytest
 import trimesh
-from bench.browser import enter
+from bench.browser import CHOOSE, enter
 from bench.wire import wire
 from plain_hall import EXHIBIT, write_plain_hall
 from running_hall import running_hall
@@ -18,9 +19,11 @@ from running_hall import running_hall
 pytestmark = pytest.mark.browser
 
 BOX = "/exhibits/box"  # aside of where a visitor looks first
-STANDS = """async (node) => {
-  const { meshesOf } = await import("/static/viser/viser_adapter.js");
-  return meshesOf(node).length > 0;
+FARTHEST = "/exhibits/crate-10"
+STANDS = """(node) => {
+  let meshes = 0;
+  window.__viserMutable?.nodeRefFromName?.[node]?.traverse((child) => { meshes += child.isMesh ? 1 : 0; });
+  return meshes > 0;
 }"""
 CENTRE = """async (node) => {
   const { meshesOf } = await import("/static/viser/viser_adapter.js");
@@ -83,6 +86,75 @@ def test_what_is_not_in_it_comes_after_it_and_is_an_exhibit_as_all(hall, chromiu
     page.mouse.click(x, y - 20)
     page.wait_for_function("() => hall.opened() === 'box'", timeout=60_000)
     page.close()
+
+
+@pytest.mark.nightly
+def test_the_nearest_comes_next(hall, chromium):
+    page = chromium.new_page(viewport={"width": 480, "height": 270})
+    page.add_init_script(f"({CHOOSE})('low')")
+    page.goto(f"{hall.url}/?lang=en")
+    page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=60_000)
+    page.wait_for_function(STANDS, arg=FARTHEST, timeout=60_000)
+    assert page.evaluate(STANDS, BOX), "asked for when the box was drawn"
+    page.close()
+
+
+@pytest.mark.nightly
+def test_a_piece_that_fails_once_is_asked_for_again_and_the_hall_stays(hall, chromium):
+    page = chromium.new_page(viewport={"width": 480, "height": 270})
+    failed: list[str] = []
+
+    def fail_once(route) -> None:
+        failed.append(route.request.url)
+        if failed.count(route.request.url) > 1:
+            route.continue_()
+        else:
+            route.fulfill(status=503)
+
+    page.route("**/scene/pieces/**", fail_once)
+    page.add_init_script(f"({CHOOSE})('low')")
+    page.goto(f"{hall.url}/?lang=en")
+    page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=60_000)
+    room = "() => window.__viserMutable.nodeRefFromName['/room'].uuid"
+    stood = page.evaluate(room)
+    page.wait_for_function(STANDS, arg=BOX, timeout=60_000)
+    assert len(failed) > len(set(failed))
+    assert page.evaluate(room) == stood
+    page.close()
+
+
+@pytest.mark.nightly
+def test_what_a_curator_takes_away_while_a_page_loads_is_not_waited_for(chromium, tmp_path):
+    content, held = write_hall(tmp_path / "content"), []
+    with running_hall(content, tmp_path) as hall:
+        page = chromium.new_page(viewport={"width": 480, "height": 270})
+        page.route("**/scene/packs/**", lambda route: held.append(route))
+        page.goto(f"{hall.url}/?lang=en")
+        page.wait_for_function("() => HALL.view.here", timeout=60_000)
+        shutil.rmtree(content / "exhibits" / "crate-05")
+        deadline = time.monotonic() + 60
+        while b"crate-05" in asked(hall, "/api/scene"):
+            assert time.monotonic() < deadline
+            page.wait_for_timeout(200)
+        held[0].continue_()
+        page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=60_000)
+        page.close()
+
+
+@pytest.mark.nightly
+def test_the_pack_is_called_the_same_by_every_server(tmp_path):
+    """So browsers have it still after a restart."""
+    content = write_hall(tmp_path / "content")
+    crates = sorted((content / "exhibits").glob("crate-*/box.glb"))
+    for number, crate in enumerate(crates):
+        large = trimesh.creation.box((0.5, 1.2 + 0.01 * number, 0.5)).subdivide_loop(iterations=5)
+        large.apply_translation((0, 0.7, 0))
+        crate.write_bytes(large.export(file_type="glb"))
+    names = set()
+    for seed in "123":
+        with running_hall(content, tmp_path / seed, env={"PYTHONHASHSEED": seed}) as hall:
+            names.add(asked(hall, "/?lang=en").decode().partition("/scene/packs/")[2].partition('"')[0])
+    assert len(names) == 1
 
 
 @pytest.mark.nightly

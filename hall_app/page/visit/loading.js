@@ -42,14 +42,14 @@ export function webglWorks() {
 }
 
 /**
- * Wait until the visitor is inside, every node of the hall is there and a picture of them all has been drawn; tells
+ * Wait until the visitor is inside, every node of `awaited()` is there and a picture of them all has been drawn; tells
  * `progress(fraction)`. False where that took too long; waiting in the queue does not count.
  */
-export async function loadHall(scene, progress, { inside, held }) {
+export async function loadHall(awaited, progress, { inside, held }) {
   let complete = null; // pictures drawn when the last node had come; the one under way may lack it
   const stands = await until(() => {
-    const left = scene.nodes.filter((name) => meshesOf(name).length === 0).length;
-    progress(1 - left / scene.nodes.length);
+    const nodes = awaited(), left = nodes.filter((name) => meshesOf(name).length === 0).length;
+    progress(1 - left / nodes.length);
     if (left === 0) complete ??= framesDrawn();
     return left === 0 && drawnOnce() && framesDrawn() > complete + 1 && inside();
   }, LOAD_PATIENCE, { held });

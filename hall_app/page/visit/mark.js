@@ -7,15 +7,14 @@ import { until } from "./loading.js";
 const PATIENCE = 10000; // [ms]
 const LOOK_EVERY = 1000; // [ms]
 
-/** createMark(display, onNew) -> {find()}; onNew(mark) when the page has become another client. */
+/** createMark(display, onNew) -> {find()}; onNew(mark) when the page has become another client, until it gives true. */
 export function createMark(display, onNew) {
   const read = () => (display === "page" ? clientMark() : document.querySelector("[data-hall-client]")?.dataset.hallClient);
   let mark = null, told = false;
   setInterval(() => {
     const now = read();
     if (!told || !now || now === mark) return;
-    mark = now;
-    onNew(mark);
+    if (onNew(now)) mark = now;
   }, LOOK_EVERY);
   return {
     /** The mark, null where the scene takes too long: onNew tells it later. */

@@ -9,6 +9,7 @@ import { createGlow } from "../look/glow.js";
 import { meshesOf, requestRender } from "../viser/viser_adapter.js";
 import { createKeys } from "../walk/keys.js";
 import { fetchJson, loadClearance } from "./loading.js";
+import { createLater } from "./later.js";
 import { createMark } from "./mark.js";
 import { createSpot, recallSpot } from "./spot.js";
 import { createTurning } from "../look/turning.js";
@@ -255,7 +256,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     frame,
     /** The hall stands: hold our camera a little longer, then only where it moves. */
     settle() {
-      walk.stands();
+      createLater({ display, nodes, busy: () => opened !== null, ask: walk.stands });
       settleUntil = performance.now() + SETTLE;
       wake(SETTLE);
       ui.pose({ x: walk.pose.x, z: walk.pose.z, yaw: gaze.yaw });
@@ -288,6 +289,8 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     closeupAt: closeup.drawnAt,
     /** Whether what is not in the first view is there, too. */
     whole: () => nodes().every((node) => meshesOf(node).length > 0),
+    /** Nodes of the first view. */
+    awaited: () => scene.nodes,
     playing: clips.playing,
   };
 }

@@ -154,7 +154,7 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
     /** Nothing is held any more, and no frame will say so: tell the server now. */
     stand(yaw, eye) { tell(0, 0, yaw, eye); },
     send,
-    /** The first view is there: what else the hall holds may come. */
+    /** The first view is there, and what came after it: the next may come. */
     stands() {
       stood = true;
       send({ t: "stands" });

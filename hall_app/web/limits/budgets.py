@@ -51,7 +51,7 @@ WALK: Mapping[str, Rate] = {
     "close": Rate(20, 2),
     "compare": Rate(10, 1),
     "client": Rate(8, 1),
-    "stands": Rate(8, 1),
+    "stands": Rate(40, 4),
     "other": Rate(30, 2),
 }
 

@@ -281,13 +281,14 @@ class _Visit:
             self.house.stage.open(self.visitor, opened)
 
     def _stands(self, message: dict[str, Any]) -> None:
-        """The page shows its first view: what was not in that may come."""
+        """The page shows its first view, and what came after it: the next may come."""
         self.visitor.stands = True
         self._bring()
 
     def _bring(self) -> None:
         if self.visitor.stands:
-            self.house.scene.bring(self.visitor.client)
+            pose = self.visitor.walk.pose
+            self.house.scene.bring(self.visitor.client, pose.x, pose.z)
 
     def _open(self, message: dict[str, Any]) -> None:
         exhibit = message.get("id")
