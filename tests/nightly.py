@@ -20,6 +20,7 @@ import os
 import subprocess
 import sys
 import time
+from functools import lru_cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -45,6 +46,11 @@ PARTS: dict[str, tuple[str, ...]] = {
 }
 
 
+# Parts whose tests need most kernels: made once, on both cores, before workers meet them at the same time.
+KERNELS = frozenset(("browser", "hall_app", "sim_core"))
+ROOMS = (("cloth", "light"), ("mesh", "weave", "garment"))
+
+
 def git(*words: str) -> str:
     return subprocess.run(
         ("git", *words), cwd=ROOT, capture_output=True, text=True, check=True
@@ -64,10 +70,25 @@ def note_of(part: str) -> dict[str, object]:
         return {}
 
 
+@lru_cache(maxsize=1)
+def kernels() -> None:
+    """What cannot be made is said here, and again by the first test that needs it."""
+    making = [
+        subprocess.Popen((sys.executable, "tests/compile_kernels.py", *rooms), cwd=ROOT) for rooms in ROOMS
+    ]
+    for one in making:
+        one.wait()
+
+
 def run(part: str, commit: str) -> bool:
     """Runs a part and notes that it passed; `commit` is empty where the tree differs from what is committed."""
     begin = time.monotonic()
     environment = os.environ | {"HALL_BROWSER": "required"}
+    if part in KERNELS:
+        kernels()
+        environment["PYTHONSAFEPATH"] = (
+            "1"  # what is installed, and its kernels, in all processes that a test starts
+        )
     passed = subprocess.run(PARTS[part], cwd=ROOT, env=environment, check=False).returncode == 0
     seconds = time.monotonic() - begin
     if passed and commit:
@@ -81,6 +102,7 @@ def run(part: str, commit: str) -> bool:
 
 def able() -> list[str]:
     """The parts this machine can run and is not itself: not every processor can stand for every other."""
+    sys.path.insert(0, str(ROOT / "tests"))  # PYTHONSAFEPATH leaves it out
     from machines import machines, processor_flags
 
     own = "skylakex" if "avx512f" in processor_flags() else "haswell"  # Zen's kernels are Haswell's
