@@ -3,7 +3,8 @@
     python tests/bench/crowd_load.py PORT '{"visitors": 100, "seconds": 10}'
 
 Each visitor holds a walk socket (random keys, 30 batches a second of 60 Hz inputs) and, with "viser", viser's socket,
-whose scene it reads and to which it tells its camera. Prints one JSON line: round trips in milliseconds.
+whose scene it reads and to which it tells its camera; it asks for what comes after the first view as a page does.
+Prints one JSON line: round trips in milliseconds.
 """
 
 from __future__ import annotations
@@ -12,17 +13,21 @@ import asyncio
 import contextlib
 import json
 import random
+import re
 import statistics
+import struct
 import sys
 import time
 from typing import Any
 
 import msgspec
+import zstandard
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 BATCHES = 30  # a second
+LATER = 12  # exhibits that a page asks for, one by one
 VISER = Subprotocol("viser-v1.1.1")
 PAGES = ("/api/scene", "/api/texts", "/catalogue", "/static/hall.js")
 
@@ -55,6 +60,16 @@ def camera(rng: random.Random) -> bytes:
     )
 
 
+def mark_in(message: bytes) -> str | None:
+    """By which viser's message tells a page which client it is."""
+    with contextlib.suppress(zstandard.ZstdError, struct.error):
+        _, packed = struct.unpack_from("<QQ", message)
+        body = zstandard.ZstdDecompressor().decompress(message[16 : 16 + packed])
+        if found := re.search(rb"/_visitor/(\d+\.[0-9a-f]+)", body):
+            return found[1].decode()
+    return None
+
+
 class Visitor:
     """One visitor: joins, walks, leaves."""
 
@@ -63,6 +78,7 @@ class Visitor:
         self.rng = random.Random(number)
         self.sent: dict[int, float] = {}
         self.inside = asyncio.Event()
+        self.mark: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
     async def look(self) -> None:
         """viser's socket as the page opens it: read all there is, tell the camera."""
@@ -72,6 +88,8 @@ class Visitor:
             async def read() -> None:
                 async for message in socket:
                     self.found["scene_bytes"].append(len(message))
+                    if not self.mark.done() and (mark := mark_in(message)):
+                        self.mark.set_result(mark)
 
             reading = asyncio.create_task(read())
             try:
@@ -90,11 +108,18 @@ class Visitor:
                 pass
             self.found["joins"].append(time.perf_counter() - began)
             self.inside.set()
-            hearing = asyncio.create_task(self._hear(socket))
+            beside = [asyncio.create_task(act(socket)) for act in (self._hear, self._ask_for_more)]
             try:
                 await self._stride(socket)
             finally:
-                hearing.cancel()
+                for task in beside:
+                    task.cancel()
+
+    async def _ask_for_more(self, socket: ClientConnection) -> None:
+        await socket.send(json.dumps({"t": "client", "client": await self.mark}))
+        for _ in range(LATER):
+            await socket.send('{"t": "stands"}')
+            await asyncio.sleep(0.3)
 
     async def _stride(self, socket: ClientConnection) -> None:
         number, due, keys, yaw = 0, time.perf_counter() + self.rng.random() / BATCHES, (1, 0), 0.0
