@@ -3,10 +3,11 @@
 import ast
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from bench.house import Arrows, Tree, floors, within
+from bench.house import Arrows, Tree, floors, nodes_of, within
 
 pytestmark = pytest.mark.door
 ROOT = Path(__file__).parent.parent
@@ -36,9 +37,13 @@ def modules(room: str) -> list[Path]:
     return sorted((ROOT / room).rglob("*.py"))
 
 
-def imported(tree: ast.AST) -> set[str]:
+def inside(path: Path) -> tuple[ast.AST, ...]:
+    return nodes_of(path.read_text("utf-8"))
+
+
+def imported(nodes: Iterable[ast.AST]) -> set[str]:
     names = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -46,15 +51,17 @@ def imported(tree: ast.AST) -> set[str]:
     return names
 
 
-def at_module_top(tree: ast.Module) -> set[str]:
-    return imported(ast.Module([n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom)], []))
+def at_module_top(path: Path) -> list[ast.stmt]:
+    module = inside(path)[0]
+    assert isinstance(module, ast.Module)
+    return module.body
 
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_arrows(room):
     assert modules(room)
     for path in modules(room):
-        ours = imported(ast.parse(path.read_text("utf-8"))) & set(ROOMS)
+        ours = imported(inside(path)) & set(ROOMS)
         assert ours <= ALLOWED[room], f"{path.relative_to(ROOT)} imports {ours - ALLOWED[room]}"
 
 
@@ -126,7 +133,7 @@ def test_tests_go_through_public_faces(house):
     packages = {folder for room in ROOMS for folder in house.folders(room)}
     inner = set()
     for path in sorted((ROOT / "tests").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in inside(path):
             if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in ROOMS:
                 alone = node.module.count(".") == 1 or node.module.endswith(".cli")
                 if node.module not in packages and not alone:
@@ -144,7 +151,7 @@ def test_a_test_is_collected_without_other_rooms_tests():
     for folder in folders:
         elsewhere = set().union(*helpers.values()) - helpers[folder] - shared
         for path in folder.glob("*.py"):
-            names = imported(ast.parse(path.read_text("utf-8"))) & elsewhere
+            names = imported(inside(path)) & elsewhere
             strange += [f"{path.relative_to(ROOT)}: {name}" for name in names]
     assert len(folders) >= 4
     assert not strange
@@ -154,7 +161,7 @@ def test_a_test_is_collected_without_other_rooms_tests():
 def test_heavy_packages_are_imported_where_needed(room):
     for path in modules(room):
         own = {"torch"} if path.is_relative_to(NETWORKS) else set()
-        top = at_module_top(ast.parse(path.read_text("utf-8"))) & (HEAVY - own)
+        top = imported(at_module_top(path)) & (HEAVY - own)
         assert not top, f"{path.relative_to(ROOT)} imports {top} at its top"
 
 
@@ -162,8 +169,7 @@ def test_networks_are_imported_by_nobody_who_has_no_torch():
     """They are classes of torch's, so their package needs it; others import it where they train."""
     name = ".".join(NETWORKS.relative_to(ROOT).parts)
     for path in (path for room in ROOMS for path in modules(room) if not path.is_relative_to(NETWORKS)):
-        tree = ast.parse(path.read_text("utf-8"))
-        top = [node.module or "" for node in tree.body if isinstance(node, ast.ImportFrom)]
+        top = [node.module or "" for node in at_module_top(path) if isinstance(node, ast.ImportFrom)]
         assert not [one for one in top if one.startswith(name)], path.relative_to(ROOT)
 
 
@@ -178,7 +184,7 @@ def test_functions_take_few_arguments(room):
     """What belongs together is a record, and has names; in cloth compiled loops take few things, too."""
     long = []
     for path in modules(room):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in inside(path):
             if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
                 continue
             given = [arg.arg for arg in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]

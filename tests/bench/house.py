@@ -18,6 +18,7 @@ import subprocess
 import tarfile
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -89,8 +90,14 @@ def _dotted(name: str) -> str:
     return ".".join(PurePosixPath(name).with_suffix("").parts).removesuffix(".__init__")
 
 
+@cache
+def nodes_of(text: str) -> tuple[ast.AST, ...]:
+    """All nodes of a module, itself first; of one text once, since many questions are asked of the same files."""
+    return tuple(ast.walk(ast.parse(text)))
+
+
 def _imported(text: str, home: list[str], known: set[str]) -> Iterable[str]:
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes_of(text):
         if isinstance(node, ast.Import):
             yield from {alias.name for alias in node.names} & known
         elif isinstance(node, ast.ImportFrom):
