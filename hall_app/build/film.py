@@ -23,6 +23,7 @@ SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
 ROUND = 75  # pictures of the walk round the finished garment
 TOGETHER = 8  # pictures that follow each other, between whose first and last the sky's light changes evenly
+SEEN = 0.0012  # of the height that is seen: half a pixel; what has moved by less since the last picture is no picture
 STILLS = {"front": 18.0, "side": 74.0, "back": 196.0}  # [deg] about +y from the front
 
 Picture = NDArray[np.uint8]
@@ -104,21 +105,35 @@ class Film:
         self._pictures: list[Future[None]] = []
         self._waiting: list[_Picture] = []
         self._count = 0
+        self._last: tuple[Moved, float] | None = None  # what the last picture shows, and from where
         self._encoding: Future[None] | None = None
         folder.mkdir(parents=True, exist_ok=True)
 
     def shoot(self, moved: Moved, angle: float = STILLS["front"]) -> None:
-        """The next picture; what an interrupted build left is kept.
+        """The next picture, if anybody sees that anything moved since the last; what an interrupted build left is kept.
 
+        Cloth creeps for seconds before it rests: nobody watches that, so it goes by faster.
         moved: vertices of the look's first pieces as they are now, None for what is not worn yet.
         """
+        if self._last is not None and angle == self._last[1] and self._near(moved, self._last[0]):
+            return
         if self._waiting and _worn(self._waiting[0].moved) != _worn(moved):
             self._draw()  # light changes evenly only between pictures of the same things
         path = self._folder / f"{self._count:05d}.png"
         self._count += 1
-        self._waiting.append(_Picture(tuple(None if x is None else np.array(x) for x in moved), angle, path))
+        copied = tuple(None if x is None else np.array(x) for x in moved)
+        self._last = copied, angle
+        self._waiting.append(_Picture(copied, angle, path))
         if len(self._waiting) == TOGETHER:
             self._draw()
+
+    def _near(self, moved: Moved, other: Moved) -> bool:
+        """Whether nothing is seen to have moved between the two."""
+        if _worn(moved) != _worn(other):
+            return False
+        pairs = zip(moved, other, strict=True)
+        away = [np.linalg.norm(a - b, axis=1).max() for a, b in pairs if a is not None and b is not None]
+        return max(away, default=0.0) < SEEN * self._look.height
 
     def walk_round(self, moved: Moved) -> None:
         """Once round the finished garment, slowly beginning and ending."""
