@@ -90,14 +90,15 @@ def crowd() -> list[tuple[str, str, str]]:
 
 
 def page() -> list[tuple[str, str, str]]:
-    found, command = read("page")["summary"], "`hall bench page`"
+    told, command = read("page"), "`hall bench page`"
+    found, machine = told["summary"], told["machine"]
 
     def spread(row: dict, unit: str, digits: int = 1) -> str:
         return f"{row['median']:.{digits}f} {unit} ({row['min']:.{digits}f}–{row['max']:.{digits}f})"
 
     rows = [
         (
-            f"cold load until all is drawn, 1280×720, median of {found['runs']}",
+            f"cold load until one may enter, 1280×720, median of {found['runs']} ({machine['processor']})",
             spread(found["load_s"], "s"),
             command,
         ),
