@@ -86,9 +86,8 @@ def run(part: str, commit: str) -> bool:
     environment = os.environ | {"HALL_BROWSER": "required"}
     if part in KERNELS:
         kernels()
-        environment["PYTHONSAFEPATH"] = (
-            "1"  # what is installed, and its kernels, in all processes that a test starts
-        )
+        # What is installed, and its kernels, in all processes that a test starts.
+        environment["PYTHONSAFEPATH"] = "1"
     passed = subprocess.run(PARTS[part], cwd=ROOT, env=environment, check=False).returncode == 0
     seconds = time.monotonic() - begin
     if passed and commit:

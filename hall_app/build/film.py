@@ -115,8 +115,9 @@ class Film:
         Cloth creeps for seconds before it rests: nobody watches that, so it goes by faster.
         moved: vertices of the look's first pieces as they are now, None for what is not worn yet.
         """
-        if self._last is not None and angle == self._last[1] and self._near(moved, self._last[0]):
-            return
+        if self._last is not None and angle == self._last[1]:
+            if _away(moved, self._last[0]) < SEEN * self._look.height:
+                return
         if self._waiting and _worn(self._waiting[0].moved) != _worn(moved):
             self._draw()  # light changes evenly only between pictures of the same things
         path = self._folder / f"{self._count:05d}.png"
@@ -126,14 +127,6 @@ class Film:
         self._waiting.append(_Picture(copied, angle, path))
         if len(self._waiting) == TOGETHER:
             self._draw()
-
-    def _near(self, moved: Moved, other: Moved) -> bool:
-        """Whether nothing is seen to have moved between the two."""
-        if _worn(moved) != _worn(other):
-            return False
-        pairs = zip(moved, other, strict=True)
-        away = [np.linalg.norm(a - b, axis=1).max() for a, b in pairs if a is not None and b is not None]
-        return max(away, default=0.0) < SEEN * self._look.height
 
     def walk_round(self, moved: Moved) -> None:
         """Once round the finished garment, slowly beginning and ending."""
@@ -190,10 +183,13 @@ def _worn(moved: Moved) -> list[bool]:
     return [vertices is not None for vertices in moved]
 
 
-def _same(moved: Moved, other: Moved) -> bool:
-    """Whether what moves is in the same place in two pictures of the same things."""
+def _away(moved: Moved, other: Moved) -> float:
+    """How far [m] anything has moved from one picture to another; infinite where they are not of the same things."""
+    if _worn(moved) != _worn(other):
+        return math.inf
     pairs = zip(moved, other, strict=True)
-    return all(here is None or there is None or np.array_equal(here, there) for here, there in pairs)
+    away = (np.linalg.norm(a - b, axis=1).max() for a, b in pairs if a is not None and b is not None)
+    return float(max(away, default=0.0))
 
 
 def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | None) -> None:
@@ -215,7 +211,7 @@ def _shoot(look: Look, pictures: Sequence[_Picture]) -> None:
     if all(picture.path.is_file() for picture in pictures):
         return
     scenes = [_surfaces(look, picture.moved) for picture in pictures]
-    still = _same(pictures[0].moved, pictures[-1].moved)
+    still = _away(pictures[0].moved, pictures[-1].moved) == 0.0
     first = lighting(scenes[0])
     last = first if still else lighting(scenes[-1])
     for number, (picture, surfaces) in enumerate(zip(pictures, scenes, strict=True)):

@@ -20,9 +20,8 @@ MOST_WAITING = 256  # messages a page may lag behind before its socket is given 
 @dataclass(eq=False)
 class Visitor:
     """One open page. client: viser's client id, None until the page has found its mark; stands: whether its first view
-    does; opened: the exhibit he sees
-    from close by; compares: whether he sees what it compares instead; near: what has noticed him; turns: exhibit ->
-    angle [rad], rate [rad/s] and time [s] that his page was told last."""
+    does; opened: the exhibit he sees from close by; compares: whether he sees what it compares instead; near: what has
+    noticed him; turns: exhibit -> angle [rad], rate [rad/s] and time [s] that his page was told last."""
 
     walk: WalkSession
     client: int | None = None

@@ -33,8 +33,6 @@ def dashed(told: Told) -> bool:
 
 def dashes_along(root: Element, told: Told) -> dict[Element, float]:
     """Of each element that dashes reach; infinite where nobody knows. told: of elements that anything is said of."""
-    if not dashed(told):
-        return {}
     wholly, sides, font = _shown(root), frame(root), _largest_font(told)
     found: dict[Element, float] = {}
     for element, pen in _reached(root, told):
@@ -44,9 +42,8 @@ def dashes_along(root: Element, told: Told) -> dict[Element, float]:
         if length and any(
             key == _EFFECT and value.strip().lower() != "none" for key, value in told.get(element, [])
         ):
-            length *= (
-                pen.enlarged * wholly
-            )  # as wide and as short as the screen has them, however large it is shown
+            # As wide and as short as the screen has them, however large it is shown.
+            length *= pen.enlarged * wholly
         # Dashes much wider than they are long are sorted for minutes.
         found[element] = inf if pen.width > _WIDE * pen.dash else length / pen.dash
     return found

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element
 
 import tinycss2
 
-from hall_app.house.drawing.styles import PROPERTIES, Token, declared, note, say, weighty, written
+from hall_app.house.drawing.styles import Token, declared, note, say, weighty, written
 
 __all__ = ["TooMuch", "told_by_sheets"]
 
@@ -57,7 +57,7 @@ class Selected:
 
 
 def told_by_sheets(
-    sheets: Iterable[tuple[str, str]], root: Element, left: Counter[str], known: Set[str] = PROPERTIES
+    sheets: Iterable[tuple[str, str]], root: Element, left: Counter[str], known: Set[str]
 ) -> tuple[dict[Element, list[tuple[str, str]]], str]:
     """What style sheets, (media, text), say of each element, by known properties, and the sheet that says it by
     classes, which the elements now have. Raises TooMuch."""

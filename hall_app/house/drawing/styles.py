@@ -108,7 +108,7 @@ def clean(name: str, tokens: Iterable[Token]) -> str | None:
 
 
 def declared(
-    style: str | Sequence[Token], left: Counter[str], known: Set[str] = PROPERTIES
+    style: str | Sequence[Token], left: Counter[str], known: Set[str]
 ) -> tuple[dict[str, str], dict[str, str]]:
     """What a style attribute or a rule's block says of known properties, (as it is, as important). left: counts what
     was left out."""

@@ -55,6 +55,9 @@ export function meshesOf(name) {
   return found;
 }
 
+/** Of these nodes, those whose model is drawn. */
+export const drawnOf = (names) => names.filter((name) => meshesOf(name).length > 0);
+
 /** From a node's own metres to three.js' world, 16 numbers; null while there is no such node. */
 export const placeOf = (name) => viser()?.nodeRefFromName?.[name]?.matrixWorld?.elements ?? null;
 

@@ -1,6 +1,6 @@
 // What the page needs before a visitor can enter: descriptions, the clearance grid, viser's hooks, the drawn hall.
 
-import { drawnOnce, framesDrawn, meshesOf } from "../viser/viser_adapter.js";
+import { drawnOf, drawnOnce, framesDrawn } from "../viser/viser_adapter.js";
 import { loadGrid } from "../walk/walkmath.js";
 
 export const LOAD_PATIENCE = 120000; // [ms]
@@ -48,7 +48,7 @@ export function webglWorks() {
 export async function loadHall(awaited, progress, { inside, held }) {
   let complete = null; // pictures drawn when the last node had come; the one under way may lack it
   const stands = await until(() => {
-    const nodes = awaited(), left = nodes.filter((name) => meshesOf(name).length === 0).length;
+    const nodes = awaited(), left = nodes.length - drawnOf(nodes).length;
     progress(1 - left / nodes.length);
     if (left === 0) complete ??= framesDrawn();
     return left === 0 && drawnOnce() && framesDrawn() > complete + 1 && inside();

@@ -6,7 +6,7 @@ import { createClips } from "../look/clip/clips.js";
 import { createCloseup } from "../look/closeup.js";
 import { createGaze } from "../look/gaze.js";
 import { createGlow } from "../look/glow.js";
-import { meshesOf, requestRender } from "../viser/viser_adapter.js";
+import { drawnOf, requestRender } from "../viser/viser_adapter.js";
 import { createKeys } from "../walk/keys.js";
 import { fetchJson, loadClearance } from "./loading.js";
 import { createLater } from "./later.js";
@@ -288,7 +288,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     compares: () => compared !== null,
     closeupAt: closeup.drawnAt,
     /** Whether what is not in the first view is there, too. */
-    whole: () => nodes().every((node) => meshesOf(node).length > 0),
+    whole: () => drawnOf(nodes()).length === scene.exhibits.length,
     /** Nodes of the first view. */
     awaited: () => scene.nodes,
     playing: clips.playing,

@@ -32,9 +32,8 @@ _LONGEST_PAGE = 64  # characters
 _UNSUPPORTED = 1003
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
-_KINDS = frozenset(
-    {"keys", "goto", "open", "close", "compare", "client", "stands"}
-)  # and "in", paid by the input
+# What is paid by the message; "in" is by the input.
+_KINDS = frozenset({"keys", "goto", "open", "close", "compare", "client", "stands"})
 
 
 def add_walk_socket(app: FastAPI, house: House, views: Views, addresses: Addresses) -> None:
