@@ -95,6 +95,14 @@ def _camera(look: Look, angle: float, size: tuple[int, int]) -> Any:
     return Camera(eye, (0.0, middle, 0.0), 30.0)
 
 
+def _light(angle: float) -> Any:
+    """The light of a picture from `angle`: as on a turntable, what is seen is lit as the front is."""
+    from sim_core.picture import Light
+
+    turn, (x, y, z) = math.radians(angle - STILLS["front"]), Light().key
+    return Light((x * math.cos(turn) + z * math.sin(turn), y, z * math.cos(turn) - x * math.sin(turn)))
+
+
 class Film:
     """Pictures under way in processes of their own, while this one simulates."""
 
@@ -211,14 +219,14 @@ def _shoot(look: Look, pictures: Sequence[_Picture]) -> None:
     if all(picture.path.is_file() for picture in pictures):
         return
     scenes = [_surfaces(look, picture.moved) for picture in pictures]
+    first = lighting(scenes[0]).sky
     still = _away(pictures[0].moved, pictures[-1].moved) == 0.0
-    first = lighting(scenes[0])
-    last = first if still else lighting(scenes[-1])
+    last = first if still else lighting(scenes[-1]).sky
     for number, (picture, surfaces) in enumerate(zip(pictures, scenes, strict=True)):
         if picture.path.is_file():
             continue
         share = number / max(1, len(pictures) - 1)
-        lit = first if still else lighting(surfaces, sky=(1.0 - share) * first.sky + share * last.sky)
+        lit = lighting(surfaces, _light(picture.angle), sky=(1.0 - share) * first + share * last)
         shown = render(surfaces, _camera(look, picture.angle, SIZE), SIZE, lit=lit)
         partial = picture.path.with_suffix(".part")
         Image.fromarray(shown).save(partial, format="png", compress_level=1)
@@ -248,9 +256,10 @@ def stills(look: Look, folder: Path) -> None:
     from sim_core.picture import lighting, render
 
     surfaces = _surfaces(look)
-    lit = lighting(surfaces)
+    sky = lighting(surfaces).sky
     views = {"drape": (STILLS["front"], SIZE)}
     views |= {f"still-{name}": (angle, (900, 1125)) for name, angle in STILLS.items()}
     for name, (angle, size) in views.items():
+        lit = lighting(surfaces, _light(angle), sky=sky)
         shown = render(surfaces, _camera(look, angle, size), size, lit=lit)
         Image.fromarray(shown).save(folder / f"{name}.jpg", quality=88, optimize=True)

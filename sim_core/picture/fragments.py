@@ -99,9 +99,9 @@ def _shaded(
         t = int(tiles[s, 0]) + int(math.floor(down * tiles[s, 4])) % rows * columns
         t += int(math.floor(across * tiles[s, 3])) % columns
         r, g, b = r * texels[t, 0], g * texels[t, 1], b * texels[t, 2]
-    if looks[s, FLOOR] > 0.0:  # nothing but shadows, else the backdrop's own colour
+    if looks[s, FLOOR] > 0.0:  # what its shadows leave of the backdrop
         shade = (0.55 + 0.45 * opened) * (0.72 + 0.28 * seen)
-        return r * shade, g * shade, b * shade, 1.0
+        return shade, shade, shade, 1.0
     ex, ey, ez = lights[0, 0] - px, lights[0, 1] - py, lights[0, 2] - pz
     size = 1.0 / math.sqrt(ex * ex + ey * ey + ez * ez)
     ex, ey, ez = ex * size, ey * size, ez * size
@@ -167,6 +167,9 @@ def developed(scene, shadow, seen, backdrop, tones, fine):
                         screen, world, normals, sky, faces, of, looks, lights, texels, tiles, corners,
                         matrix, opaque, sheer, veil, bias, f, sx + 0.5 * wide, sy + 0.5 * wide,
                     )  # fmt: skip
+                    if looks[of[f], FLOOR] > 0.0:
+                        r, g, b = r * r1, g * g1, b * b1
+                        continue
                     a = 1.0
                     if m < depth:  # more threads lie in a slanting line of sight
                         a = 1.0 - (1.0 - looks[of[f], ALPHA]) ** (1.0 / facing)

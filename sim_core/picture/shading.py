@@ -183,7 +183,7 @@ def render(
     width, height = size[0] * supersample, size[1] * supersample
     scene = _scene(surfaces, lit, camera, width, height)
     backdrop = np.tile(_linear(lit.light.background), (height, 1))
-    if lit.ground:  # floor and wall are one colour, a little darker towards the top: no horizon to look at
+    if lit.ground:  # one colour, a little darker towards the top, and a floor that only shades it: no horizon
         backdrop *= np.linspace(0.80, 1.03, height)[:, None]
     return developed(scene, lit.shadow, _seen(scene, width, height), backdrop, _tones(), supersample)
 

@@ -245,6 +245,26 @@ def test_what_nobody_sees_move_is_no_picture_of_its_own(tmp_path, monkeypatch):
     assert 3 <= pictures(tmp_path / "creeps", [0.0001] * 50) <= 5  # 5 mm, at half a pixel or more a picture
 
 
+def test_backs_are_lit_as_fronts_are(tmp_path):
+    turn, high = np.meshgrid(np.linspace(0, 2 * np.pi, 73)[:-1], np.linspace(0.0, 1.2, 13))
+    drum = np.stack([0.3 * np.sin(turn), high, 0.3 * np.cos(turn)], 2).reshape(-1, 3)
+    a = (np.arange(12)[:, None] * 72 + np.arange(72)).ravel()
+    b = (np.arange(12)[:, None] * 72 + (np.arange(72) + 1) % 72).ravel()
+    faces = np.concatenate([np.stack([a, b, b + 72], 1), np.stack([a, b + 72, a + 72], 1)]).astype(np.int32)
+    look = Look((Piece(drum, (Part(faces, (0.6, 0.5, 0.4)),)),), 1.2)
+    with filming(look, tmp_path) as film:
+        film.stills(look, tmp_path)
+        film.wait(lambda share: None)
+    shown = {
+        name: np.asarray(Image.open(tmp_path / f"still-{name}.jpg").convert("L")).astype(float)
+        for name in ("front", "side", "back")
+    }
+    middle = {name: picture[400:700, 300:600] for name, picture in shown.items()}
+    assert np.ptp(middle["front"].mean(0)) > 20  # the lamp stands aside: one flank is brighter
+    for name in ("side", "back"):
+        assert np.abs(middle[name] - middle["front"]).mean() < 2.0
+
+
 @pytest.mark.nightly
 @pytest.mark.skipif(not film_possible(), reason="films need PyAV")
 def test_the_film_of_a_belted_dress_shows_both(tmp_path):
