@@ -49,8 +49,8 @@ CHOOSE = "(level) => { localStorage['hall.quality'] ??= level; }"
 
 
 def enter(page, url: str, *, quality: str | None = "low") -> None:
-    """Open the hall at `url`, go in and wait for what is not in its first view; `quality` of the picture if none is
-    chosen yet, None leaves it to the page."""
+    """Open the hall at `url`, go in and wait for what is not in its first view, unless an exhibit opens at once, for
+    which that waits; `quality` of the picture if none is chosen yet, None leaves it to the page."""
     if quality is not None:
         page.add_init_script(f"({CHOOSE})({quality!r})")
     page.goto(url)
@@ -58,7 +58,7 @@ def enter(page, url: str, *, quality: str | None = "low") -> None:
     page.click("[data-testid=enter]")
     page.locator("[data-testid=enter-screen]").wait_for(state="detached", timeout=PATIENCE)
     # An earlier hall, for comparing, has all in its first view; where the server walks nothing is known of viser.
-    whole = "() => hall.display() !== 'page' || (hall.whole?.() ?? true)"
+    whole = "() => hall.display() !== 'page' || (hall.whole?.() ?? true) || hall.opened() !== null"
     page.wait_for_function(whole, timeout=PATIENCE)
 
 
