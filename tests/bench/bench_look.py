@@ -2,6 +2,7 @@
 
     python tests/bench/bench_look.py [--rounds 4] [--content FOLDER] [--json FILE]
     python tests/bench/bench_look.py --silk [--rounds 4] [--json FILE]      what silk's gleam costs: look_silk.py
+    python tests/bench/bench_look.py --before CHECKOUT [--exhibit beizi]    beside an earlier hall with its own content
 
 shipped    room unlit, its light baked; two lights and the room's reflection for the exhibits
 ambient    the same models with lit materials, one ambient light and nothing else
@@ -18,6 +19,7 @@ import argparse
 import contextlib
 import json
 import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -27,12 +29,14 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from bench.browser import enter, open_browser  # noqa: E402
+from bench.picture_pairs import STANDS  # noqa: E402
 from bench.signature import signed  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 LOOKS = ("shipped", "ambient", "beside", "default")
 MOST = {"ambient": 1 / 2, "beside": 1 / 2, "default": 1 / 3}  # what the shipped look may cost of each
+MOST_BEFORE = {"entry": 1.3, "exhibit": 1.0}  # and of commit 47c1f8d, with all exhibits in
 VIEW = {"width": 960, "height": 540}
 DRAW = """
 (ms) => new Promise((done) => {
@@ -130,6 +134,63 @@ def measured(rounds: int, seconds: float, content: Path) -> dict[str, dict[str, 
     return found
 
 
+def beside_earlier(
+    rounds: int, seconds: float, halls: dict[str, Path], exhibit: str
+) -> dict[str, dict[str, list[float]]]:
+    """Hall -> view -> CPU ms a picture in each round; halls: checkouts, each with its own content in `assets`."""
+    program = (sys.executable, "-P", "-m", "hall_app")
+    with contextlib.ExitStack() as stack:
+        work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        browser = stack.enter_context(open_browser())
+        pages, stands = {}, {}
+        for name, checkout in halls.items():
+            env = {"PYTHONPATH": str(checkout.resolve())}
+            hall = stack.enter_context(
+                running_hall(checkout / "assets", work / name, program=program, env=env)
+            )
+            page = pages[name] = browser.new_context(viewport=VIEW).new_page()
+            enter(page, f"{hall.url}/?lang=en")
+            page.evaluate("() => { document.querySelector('#hall-ui').style.display = 'none'; }")
+            page.wait_for_timeout(8000)  # an earlier page tells nobody when all has come
+            start = page.evaluate("async () => (await (await fetch('/api/scene')).json()).start")
+            stands[name] = {
+                "entry": [start["x"], start["z"], start["yaw"]],
+                "exhibit": page.evaluate(STANDS)[exhibit],
+            }
+        gpu = gpu_process()
+        found: dict[str, dict[str, list[float]]] = {name: {"entry": [], "exhibit": []} for name in halls}
+        for number in range(rounds):
+            for view in ("entry", "exhibit"):
+                for name, page in pages.items():
+                    page.bring_to_front()
+                    page.evaluate("(there) => hall.goTo(...there)", stands[name][view])
+                    page.wait_for_timeout(600)
+                    found[name][view].append(cost(page, gpu, seconds))
+            print(f"round {number + 1} of {rounds}", flush=True)
+    return found
+
+
+def earlier(rounds: int, seconds: float, checkout: Path, exhibit: str, path: Path | None) -> int:
+    """Measures this hall beside an earlier one and prints both."""
+    found = beside_earlier(rounds, seconds, {"now": ROOT, "before": checkout}, exhibit)
+    best = {name: {view: min(values) for view, values in row.items()} for name, row in found.items()}
+    share = {view: best["now"][view] / best["before"][view] for view in best["now"]}
+    print(f"\n{'CPU ms a picture, best of ' + str(rounds):34}{'entry':>10}{exhibit:>10}")
+    for name, row in best.items():
+        print(f"{name:34}{row['entry']:10.1f}{row['exhibit']:10.1f}")
+    print(f"{'now / before':34}{share['entry']:10.2f}{share['exhibit']:10.2f}")
+    print(f"{'asked at most':34}{MOST_BEFORE['entry']:10.2f}{MOST_BEFORE['exhibit']:10.2f}")
+    if path:
+        told = {"cpu_ms": best, "share": share, "before": checkout_commit(checkout)}
+        path.write_text(json.dumps(signed({"summary": told, "rounds": found}), indent=1))
+    return 0
+
+
+def checkout_commit(checkout: Path) -> str:
+    command = ("git", "-C", str(checkout), "rev-parse", "--short", "HEAD")
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
 def summary(found: dict[str, dict[str, list[float]]]) -> dict:
     """Best of the rounds, and the shipped look's share of the others, the worst of the views."""
     best = {look: {view: min(values) for view, values in row.items()} for look, row in found.items()}
@@ -161,7 +222,13 @@ def main() -> int:
     parser.add_argument("--content", type=Path, default=ROOT / "assets")
     parser.add_argument("--json", type=Path, metavar="FILE")
     parser.add_argument("--silk", action="store_true", help="what the gleam of a figured silk costs, alone")
+    parser.add_argument("--before", type=Path, metavar="CHECKOUT", help="this hall beside an earlier one")
+    parser.add_argument("--exhibit", default="beizi", help="before which both are drawn, of what both show")
     arguments = parser.parse_args()
+    if arguments.before:
+        return earlier(
+            arguments.rounds, arguments.seconds, arguments.before, arguments.exhibit, arguments.json
+        )
     if arguments.silk:
         return silk(arguments.rounds, arguments.seconds, arguments.json)
     found = measured(arguments.rounds, arguments.seconds, arguments.content)
