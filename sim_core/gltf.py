@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 __all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts", "node_matrix", "row_size"]
 
 VERTICES, INDICES = 34962, 34963  # what a buffer view holds
-FLOAT, U16, U32 = 5126, 5123, 5125
+FLOAT, U8, U16, U32 = 5126, 5121, 5123, 5125
 COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 HEADER = 20  # bytes ahead of the JSON part: the file's header and the part's own
@@ -174,7 +174,8 @@ class GlbFile:
         uv1: np.ndarray | None = None,
         shading: np.ndarray | bool = True,
     ) -> None:
-        """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
+        """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1, or as
+        uint8 where steps of a 255th do not show.
 
         uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted,
         unless `shading` (V, 3) gives them; with False, for what is unlit, and with colours it has none.
@@ -186,8 +187,12 @@ class GlbFile:
             shading = normals(vertices, faces) if shading is True else np.asarray(shading)
             attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
         elif colours is not None:
-            fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
-            attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)
+            if colours.dtype == np.uint8:
+                opaque = np.c_[colours, np.full(len(colours), 255, np.uint8)]
+                attributes["COLOR_0"] = self._accessor(opaque, "VEC4", U8, VERTICES)
+            else:
+                fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
+                attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)
         if uv is not None:
             attributes["TEXCOORD_0"] = self._accessor(uv.astype("<f4"), "VEC2", FLOAT, VERTICES)
         if uv1 is not None:

@@ -34,6 +34,7 @@ __all__ = ["bake_outfit", "budget", "refuse_disorder"]
 Progress = Callable[[float, str], None]
 
 FILM = ("drape.webm", "drape.mp4")
+KEPT = 2.0**-20  # [m] to which a garment is kept, a thousandth of what any of its figures is asked to
 
 
 def bake_outfit(
@@ -171,6 +172,7 @@ def _dress(
         )
         lap("drape")
         refuse_disorder(garments)
+        garments = tuple(garment.on_grid(KEPT) for garment in garments)
         if taken is not None:
             taken.walk_round(_at_rest(wardrobe.outfit, garments))
             taken.stills(wardrobe.still(garments), out)

@@ -14,6 +14,7 @@ from pathlib import Path
 from hall_app.content.problems import Problem
 from hall_app.content.schema.exhibit import ExhibitFile
 from hall_app.content.schema.hall import HallFile
+from hall_app.content.schema.plan import PlanFile
 
 BAKED = "baked/"  # written by hall build, absent before it
 MOTION = BAKED + "motion.clip"  # how an outfit with a motion moves, written by hall build
@@ -30,6 +31,13 @@ def hall_files(hall: HallFile) -> Iterator[tuple[str, str]]:
     """(key, path) of the files hall.toml names, relative to the content folder."""
     for number, path in enumerate(hall.music, 1):
         yield f"music[{number}]", path
+
+
+def plan_files(plan: PlanFile) -> Iterator[tuple[str, str]]:
+    """(key, path) of the files plan.toml names, relative to the content folder."""
+    for number, sign in enumerate(plan.sign, 1):
+        if sign.picture:
+            yield f"sign[{number}].picture", sign.picture
 
 
 def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:

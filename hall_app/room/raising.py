@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hall_app.room.parts.ceiling import ceilings_of, floor_of
@@ -36,14 +37,20 @@ class Room:
 
 
 def raise_room(
-    plan: PlanFile, title: Bilingual, exhibits: Sequence[Exhibit] = (), *, blank: bool = False
+    plan: PlanFile,
+    title: Bilingual,
+    exhibits: Sequence[Exhibit] = (),
+    *,
+    folder: Path = Path(),
+    blank: bool = False,
 ) -> Room:
     """The room of `plan` with labels for `exhibits`.
 
-    blank: leave the letters out, on a machine without the font; else raises MissingFontError there.
+    folder: where the pictures lie that hang in it; blank: leave the letters out, on a machine without the font; else
+    raises MissingFontError there.
     """
     regions = Regions(plan)
-    boards = boards_of(plan, regions, title, exhibits)
+    boards = boards_of(plan, regions, title, exhibits, folder)
     sheet = write([board.writing for board in boards], blank=blank)
     patches = [
         *floor_of(plan, regions),

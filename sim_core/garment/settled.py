@@ -48,6 +48,13 @@ class Settled:
         steady = {"gravity": (gravity, gravity), "sewing": (sewing, sewing)}
         return replace(self.last, seconds=seconds, label=label, rest=None, body=None, **steady)
 
+    def on_grid(self, step: float) -> Settled:
+        """The same, each coordinate of what it lies on a multiple of `step` [m]."""
+        surfaces = tuple(
+            replace(one, vertices=np.rint(one.vertices / step) * step) for one in self.beneath.surfaces
+        )
+        return replace(self, beneath=replace(self.beneath, surfaces=surfaces))
+
     def to_header(self, lent: Mapping[int, Lent] = MappingProxyType({})) -> dict[str, Any]:
         """What JSON can hold of it; `arrays` are the rest. lent: surfaces that another file holds."""
         return {

@@ -2,6 +2,7 @@
 
 import json
 import struct
+import zipfile
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -109,6 +110,29 @@ def test_garment_file_round_trip(tmp_path: Path) -> None:
     assert Garment.load(tmp_path / "g.npz").origins == ((0.1, -0.25),)
     moved = Garment(**{**garment.__dict__, "positions": garment.positions + 1e-15})
     assert moved.digest() != garment.digest()
+
+
+def test_on_a_grid_a_file_is_half_as_large_and_nothing_has_moved(tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(4)
+    rough = ball.vertices + np.random.default_rng(1).normal(0.0, 0.002, ball.vertices.shape)
+    body = Surface(rough, np.asarray(ball.faces, np.int32))
+    garment = replace(arched(0.05), settled=Settled(Contact(), Phase(1.0), Holds.of(1), Beneath((body,))))
+    step = 2.0**-20
+    kept = garment.on_grid(step)
+    assert np.abs(kept.positions - garment.positions).max() <= step / 2
+    assert kept.on_grid(step).digest() == kept.digest()
+    kept.save(tmp_path / "kept.npz")
+    garment.save(tmp_path / "whole.npz")
+    sizes = {}
+    for name in ("kept", "whole"):
+        with zipfile.ZipFile(tmp_path / f"{name}.npz") as held:
+            sizes[name] = held.getinfo("surface0_vertices.npy").compress_size
+    assert sizes["kept"] < 0.6 * sizes["whole"]
+    back = Garment.load(tmp_path / "kept.npz")
+    assert back.digest() == kept.digest()
+    assert back.settled is not None
+    assert kept.settled is not None
+    assert back.settled.beneath.digest() == kept.settled.beneath.digest()
 
 
 def test_what_two_layers_lie_on_is_written_once(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from hall_app.content.files import TEXTS, hall_files, is_there
+from hall_app.content.files import TEXTS, hall_files, is_there, plan_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.pictures import FORMATS, picture_fault
 from hall_app.content.problems import Problem
@@ -32,6 +32,11 @@ def media_problems(content: Content) -> list[Problem]:
         problem
         for key, path in hall_files(content.hall)
         if (problem := _problem("hall.toml", key, path, content.folder / path, "audio"))
+    ]
+    found += [
+        problem
+        for key, path in plan_files(content.plan)
+        if (problem := _problem("plan.toml", key, path, content.folder / path, "picture"))
     ]
     for exhibit in content.exhibits:
         for file, key, path, kind in _named(exhibit):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hall_app.content.files import file_problem, hall_files, revision
+from hall_app.content.files import file_problem, hall_files, plan_files, revision
 from hall_app.content.floor.placement import plan_problems, start_problems
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.loading.exhibits import whatever_it_holds
@@ -49,6 +49,8 @@ def _load_house(folder: Path) -> tuple[HallFile | None, PlanFile | None, list[Pr
             problems += plan_problems(plan)
         except Exception as error:  # geometry of whatever was written
             problems.append(unforeseen("plan.toml", error))
+        hung = [file_problem("plan.toml", key, folder, path, root=folder) for key, path in plan_files(plan)]
+        problems += [problem for problem in hung if problem]
     if hall is not None:
         named = [file_problem("hall.toml", key, folder, path, root=folder) for key, path in hall_files(hall)]
         problems += [problem for problem in named if problem]

@@ -25,6 +25,8 @@ REMEDIES = {
     "one_source": 'write file = "media/…" or files = ["media/…", …]',
     "body_shape": 'write shape = "round" with radius, or shape = "box" with size = [width, depth]',
     "zero_length": "give the wall two different ends",
+    "sign_shows": 'write kind = "picture" with picture = "media/….jpg", or remove picture',
+    "sign_painted": "save it as .jpg, .png or .webp",
     "eye_order": "write min ≤ default ≤ max, in metres",
     "own_address": "write it whole, e.g. https://hall.example.org, without ? and #",
     "email": "write it whole, e.g. collection@example.org",

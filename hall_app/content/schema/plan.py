@@ -7,7 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from hall_app.content.schema.values import Bilingual, Metres, Point, Ring, Table, Text
+from hall_app.content.schema.values import Bilingual, ContentPath, Metres, Point, Ring, Table, Text
+
+PAINTED = (".jpg", ".jpeg", ".png", ".webp")  # what the room's letters can lie beside on one sheet
 
 
 class Wall(Table):
@@ -112,14 +114,27 @@ class Curtain(Table):
 
 
 class Sign(Table):
-    """A hanging board: the plaque with the hall's title, or a banner of calligraphy."""
+    """What hangs on a wall: the plaque with the hall's title, a banner of calligraphy, or a picture on a scroll."""
 
-    kind: Literal["plaque", "banner"] = Field(description="plaque or banner")
+    kind: Literal["plaque", "banner", "picture"] = Field(description="plaque, banner, or picture on a scroll")
     at: Point = Field(description="the wall's face it hangs on, [x, z]")
     facing: float = Field(0.0, description="degrees its front is turned; 0 looks to +z")
     height: Annotated[float, Field(ge=2.0, le=20)] = Field(description="height of its middle [m]")
     size: tuple[Metres, Metres] = Field(description="width and height [m]")
-    text: Text | None = Field(None, description="what it says; without it the hall's title")
+    text: Text | None = Field(None, description="what a plaque or banner says; without it the hall's title")
+    picture: ContentPath | None = Field(
+        None, description="of a picture: the file, from the content folder on; .jpg, .png or .webp"
+    )
+
+    @model_validator(mode="after")
+    def _says_or_shows(self) -> Sign:
+        if (self.kind == "picture") != (self.picture is not None) or (self.picture and self.text):
+            raise PydanticCustomError(
+                "sign_shows", "a sign of kind picture has a picture and no text, any other has none"
+            )
+        if self.picture and not self.picture.lower().endswith(PAINTED):
+            raise PydanticCustomError("sign_painted", "a picture that hangs in the hall is of pixels")
+        return self
 
 
 class PlanFile(Table):
@@ -135,4 +150,4 @@ class PlanFile(Table):
     laylight: tuple[Laylight, ...] = Field((), description="paper ceilings, one [[laylight]] each")
     lantern: tuple[Lantern, ...] = Field((), description="lanterns, one [[lantern]] each")
     curtain: tuple[Curtain, ...] = Field((), description="curtains, one [[curtain]] each")
-    sign: tuple[Sign, ...] = Field((), description="plaque and banners, one [[sign]] each")
+    sign: tuple[Sign, ...] = Field((), description="plaque, banners and pictures, one [[sign]] each")

@@ -47,7 +47,7 @@ def bake_room(
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     progress(0.0, "geometry")
-    room = raise_room(content.plan, content.hall.title, content.exhibits)
+    room = raise_room(content.plan, content.hall.title, content.exhibits, folder=content.folder)
     from hall_app.light import Sampling, bake_light
 
     walls = surfaces(room.patches, exhibit_solids(content, data))

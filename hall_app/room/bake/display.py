@@ -55,10 +55,11 @@ def shown_room(content: Content, data: Path, last: ShownRoom | None = None) -> S
         picture = (folder / ENVIRONMENT).read_bytes()
         return ShownRoom("", built, (folder / GLB).read_bytes(), picture, True, former=True, broken=broken)
     lacking = None
+    raised = content.plan, content.hall.title, content.exhibits
     try:
-        room = raise_room(content.plan, content.hall.title, content.exhibits)
+        room = raise_room(*raised, folder=content.folder)
     except MissingFontError as error:
-        room = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)
+        room = raise_room(*raised, folder=content.folder, blank=True)
         lacking = str(error)
     return ShownRoom(
         key, built, room_glb(room), environment_jpeg(painted()), False, lacking=lacking, broken=broken

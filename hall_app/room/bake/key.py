@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hall_app.content.bakes.models import models_of
-from hall_app.content.files import digest
+from hall_app.content.files import digest, plan_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.schema.plan import PlanFile
 
@@ -19,7 +19,7 @@ ROOM_VERSION = 3
 
 
 def room_key(content: Content, data: Path | None = None) -> str:
-    """16 hex digits over plan, title, the exhibits' labels, places and hall models, and ROOM_VERSION.
+    """16 hex digits over plan and its pictures, title, the exhibits' labels, places and hall models, and ROOM_VERSION.
 
     The models stand in the light, so that a garment baked again takes the old shadows with it. data: the data folder,
     where garments' own bakes may lie.
@@ -31,6 +31,8 @@ def room_key(content: Content, data: Path | None = None) -> str:
         "labels": {exhibit.id: _label(exhibit) for exhibit in content.exhibits},
         "models": {exhibit.id: _model(content, exhibit, data) for exhibit in content.exhibits},
     }
+    if hung := [_whole(content.folder / path) for _, path in plan_files(content.plan)]:
+        inputs["pictures"] = hung
     return _hash(inputs)
 
 
@@ -43,7 +45,7 @@ def built_key(plan: PlanFile) -> str:
     built = plan.model_dump(
         mode="json",
         exclude={
-            "sign": {"__all__": {"text"}},
+            "sign": {"__all__": {"text", "picture"}},
             "bay": {"__all__": {"name"}},
             "solid": {"__all__": {"label"}},
         },
@@ -65,7 +67,12 @@ def _label(exhibit: Exhibit) -> dict[str, Any]:
 def _model(content: Content, exhibit: Exhibit, data: Path | None) -> str | None:
     """Digest of the model that casts the exhibit's shadow, None while it has none."""
     models = models_of(content, exhibit, data)
+    return _whole(models.hall) if models is not None else None
+
+
+def _whole(path: Path) -> str | None:
+    """A file's digest; None where it is not there, or not ours to read: nothing is drawn of it."""
     try:
-        return digest(models.hall) if models is not None else None
-    except OSError:  # not there, or not ours to read: it casts none
+        return digest(path)
+    except OSError:
         return None

@@ -1,10 +1,11 @@
-"""Where words stand in the hall: labels before exhibits, boards over the rooms' doors, plaque and banners."""
+"""Words and pictures in the hall: labels before exhibits, boards over the rooms' doors, plaque, banners, scrolls."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +27,8 @@ _LABEL, _SMALL = (0.52, 0.17), (0.36, 0.13)  # [m]
 _POST = 0.92  # [m] height of a label's middle above the floor or the booth it stands on
 _POST_RADIUS = 0.011  # [m]
 _ASKEW = 20.0  # [deg] from its booth's front, beyond which an exhibit faces across it
-_PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340}  # per metre
+SCROLLS = ("banner", "picture")  # hang from a rod and are weighed down by one
+_PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340, "picture": 310}  # per metre
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,26 +43,29 @@ class Board:
     post: float = 0.0
 
 
-def boards_of(plan: PlanFile, regions: Regions, title: Bilingual, exhibits: Iterable[Exhibit]) -> list[Board]:
-    """Everything that is written in the hall."""
-    boards = [_hung(sign, title) for sign in plan.sign]
+def boards_of(
+    plan: PlanFile, regions: Regions, title: Bilingual, exhibits: Iterable[Exhibit], folder: Path = Path()
+) -> list[Board]:
+    """Everything that is written in the hall, and the pictures that hang in it, whose files lie in `folder`."""
+    boards = [_hung(sign, title, folder) for sign in plan.sign]
     boards += [board for bay in plan.bay if (board := _over_the_door(bay, plan, regions))]
     shown = tuple(exhibits)
     crowd = Counter(exhibit.file.place.on for exhibit in shown)
     return boards + [_label(exhibit, plan, alone=crowd[exhibit.file.place.on] == 1) for exhibit in shown]
 
 
-def _writing(kind, zh: str, en: str, size: Sequence[float]) -> Writing:
+def _writing(kind, zh: str, en: str, size: Sequence[float], picture: Path | None = None) -> Writing:
     scale = _PIXELS[kind]
-    return Writing(kind, zh, en, (round(size[0] * scale), round(size[1] * scale)))
+    return Writing(kind, zh, en, (round(size[0] * scale), round(size[1] * scale)), picture)
 
 
-def _hung(sign: Sign, title: Bilingual) -> Board:
+def _hung(sign: Sign, title: Bilingual, folder: Path) -> Board:
     zh, en = (sign.text, "") if sign.text else (title.zh, title.en)
+    picture = folder / sign.picture if sign.picture else None
     out = 0.10 if sign.kind == "plaque" else 0.04
     frame = Frame.on_floor(sign.at, sign.facing, sign.height).moved(z=out)
     tilt = -8.0 if sign.kind == "plaque" else 0.0
-    return Board(_writing(sign.kind, zh, en, sign.size), frame, sign.size, tilt)
+    return Board(_writing(sign.kind, zh, en, sign.size, picture), frame, sign.size, tilt)
 
 
 def _label(exhibit: Exhibit, plan: PlanFile, *, alone: bool) -> Board:
@@ -160,7 +165,7 @@ def signs_of(boards: Sequence[Board], sheet: Sheet) -> list[Patch]:
     patches: list[Patch] = []
     for board, place in zip(boards, sheet.places, strict=True):
         patches += _plate(board, place)
-        if board.writing.kind == "banner":
+        if board.writing.kind in SCROLLS:
             patches += _rods(board)
         if board.post:
             patches += _post(board)
@@ -169,7 +174,7 @@ def signs_of(boards: Sequence[Board], sheet: Sheet) -> list[Patch]:
 
 def _thickness(board: Board) -> float:
     """Of its plate [m]."""
-    return {"label": 0.012, "banner": 0.004}.get(board.writing.kind, 0.05)
+    return 0.004 if board.writing.kind in SCROLLS else {"label": 0.012}.get(board.writing.kind, 0.05)
 
 
 def _post(board: Board) -> list[Patch]:
@@ -198,7 +203,7 @@ def _plate(board: Board, place: tuple[float, float, float, float]) -> list[Patch
     x0, y0, x1, y1 = place
     uv = np.array([[x0, y1], [x1, y1], [x1, y0], [x0, y0]])
     face = quad(patches[0].vertices, "signs", uv=uv)
-    return [face, *patches[1:]]
+    return [face] if board.writing.kind in SCROLLS else [face, *patches[1:]]  # paper has no edge to see
 
 
 def _rods(board: Board) -> list[Patch]:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 __all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
-_TEXTURE_QUALITY, _SHEET_QUALITY = 87, 82
-_SHADED_SHEET_QUALITY = 78  # where corners carry colours, too: both kinds of room keep within the same bytes
+_TEXTURE_QUALITY, _SHEET_QUALITY = 87, 70
+_SHADED_SHEET_QUALITY = 72  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
@@ -49,7 +49,7 @@ def room_glb(room: Room, light: LightMap | None = None) -> bytes:
             np.concatenate([patch.vertices for patch in patches]),
             faces,
             _material(glb, name, room, patches, quality),
-            uv,
+            uv if MATERIALS[name].texture is not None else None,
             colours=_shade(patches) if light is None and not MATERIALS[name].glow else None,
             uv1=np.concatenate([corners[k] for k in chosen]) if corners is not None and lit else None,
             shading=False,
@@ -104,9 +104,10 @@ def _encoded(picture: NDArray[np.uint8], kind: str, **options: Any) -> bytes:
     return stream.getvalue()
 
 
-def _shade(patches: list[Patch]) -> Floats:
-    """(V, 3) factors on the colours by the direction each patch's triangles look in."""
-    return np.concatenate([np.broadcast_to(_even(patch)[:, None], patch.vertices.shape) for patch in patches])
+def _shade(patches: list[Patch]) -> NDArray[np.uint8]:
+    """(V, 3) factors on the colours, of 255, by the direction each patch's triangles look in."""
+    shades = [np.broadcast_to(_even(patch)[:, None], patch.vertices.shape) for patch in patches]
+    return np.rint(255 * np.clip(np.concatenate(shades), 0.0, 1.0)).astype(np.uint8)
 
 
 def _even(patch: Patch) -> Floats:

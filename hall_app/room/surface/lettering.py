@@ -1,11 +1,11 @@
-"""Labels, plaque, banners and name boards as pictures on one sheet, set with Pillow in Noto Serif CJK."""
+"""Labels, plaque, banners, name boards and hung pictures on one sheet, set with Pillow in Noto Serif CJK."""
 
 from __future__ import annotations
 
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -13,17 +13,21 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from hall_app.content.models.pictures import in_eight_bits
+
 if TYPE_CHECKING:
+    from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
     from PIL.ImageFont import FreeTypeFont
 
 __all__ = ["MissingFontError", "Sheet", "Writing", "font_file", "write"]
 
-WIDTH = 2048  # [pixels]
+WIDTH = 2048  # [pixels], and the most it is high: a side that every telephone has
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
 _PAPER, _INK, _FADED = "#CFC5AF", "#15110F", "#241D18"  # labels lie in the light of the spots
 _GROUND, _GOLD, _SEAL, _SILK = "#241512", "#CFA85A", "#9E2B25", "#5E7276"
+_SCROLL = "#EFE6D2"
 
 
 class MissingFontError(RuntimeError):
@@ -32,17 +36,19 @@ class MissingFontError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """What stands on one board: its kind, a Chinese and an English line, width and height in pixels."""
+    """What stands on one board: its kind, a Chinese and an English line, width and height in pixels; of a picture its
+    file."""
 
-    kind: Literal["label", "plaque", "banner", "board"]
+    kind: Literal["label", "plaque", "banner", "board", "picture"]
     zh: str
     en: str
     size: tuple[int, int]
+    picture: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """picture: (H, 2048, 3) uint8 sRGB; places: of each writing (x0, y0, x1, y1) in 0..1, y down."""
+    """picture: (H, 2048, 3) uint8 sRGB, H ≤ 2048; places: of each writing (x0, y0, x1, y1) in 0..1, y down."""
 
     picture: NDArray[np.uint8]
     places: tuple[tuple[float, float, float, float], ...]
@@ -55,7 +61,7 @@ def write(writings: Sequence[Writing], *, blank: bool = False) -> Sheet:
     """
     from PIL import Image
 
-    spots, height = _packed([writing.size for writing in writings])
+    writings, spots, height = _fitting(writings)
     sheet = Image.new("RGB", (WIDTH, height), _PAPER)
     places = []
     for writing, (x, y) in zip(writings, spots, strict=True):
@@ -68,17 +74,33 @@ def write(writings: Sequence[Writing], *, blank: bool = False) -> Sheet:
     return Sheet(np.asarray(sheet), tuple(places))
 
 
+def _fitting(writings: Sequence[Writing]) -> tuple[list[Writing], list[tuple[int, int]], int]:
+    """All of them a little smaller, where they would not lie on one sheet otherwise; where each lies, and the sheet's
+    height."""
+    share = 1.0
+    while True:
+        scaled = [
+            (max(1, round(share * one.size[0])), max(1, round(share * one.size[1]))) for one in writings
+        ]
+        if all(wide + 2 * _GAP <= WIDTH for wide, _ in scaled):
+            spots, height = _packed(scaled)
+            if height <= WIDTH:
+                small = [replace(one, size=size) for one, size in zip(writings, scaled, strict=True)]
+                return small, spots, height
+        share *= 0.97
+
+
 def _packed(sizes: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], int]:
-    """Upper left corners on shelves, tallest first, and the sheet's height (a multiple of 64)."""
-    spots = [(0, 0)] * len(sizes)
-    x, y, shelf = _GAP, _GAP, 0
+    """Upper left corners, the tallest first and each as high up as there is room, and the sheet's height (a multiple
+    of 64)."""
+    spots, filled = [(0, 0)] * len(sizes), np.zeros(WIDTH, int)
     for index in sorted(range(len(sizes)), key=lambda k: (-sizes[k][1], k)):
-        wide, high = sizes[index]
-        if x + wide + _GAP > WIDTH:
-            x, y, shelf = _GAP, y + shelf + 2 * _GAP, 0
-        spots[index] = (x, y)
-        x, shelf = x + wide + 2 * _GAP, max(shelf, high)
-    return spots, max(64, -(-(y + shelf + _GAP) // 64) * 64)
+        wide, high = (side + 2 * _GAP for side in sizes[index])
+        below = np.lib.stride_tricks.sliding_window_view(filled, wide).max(axis=1)
+        x = int(np.argmin(below))
+        spots[index] = x + _GAP, int(below[x]) + _GAP
+        filled[x : x + wide] = below[x] + high
+    return spots, max(64, -(-int(filled.max()) // 64) * 64)
 
 
 def font_file(bold: bool = False) -> Path:
@@ -120,13 +142,36 @@ def font_folders() -> list[Path]:
 def _drawn(writing: Writing, blank: bool):
     from PIL import Image, ImageDraw
 
-    ground = {"label": _PAPER, "plaque": _GROUND, "board": _GROUND, "banner": "#EFE6D2"}[writing.kind]
+    ground = {"label": _PAPER, "plaque": _GROUND, "board": _GROUND}.get(writing.kind, _SCROLL)
     picture = Image.new("RGB", writing.size, ground)
     draw = ImageDraw.Draw(picture)
-    {"label": _label, "plaque": _board, "board": _board, "banner": _banner}[writing.kind](
-        draw, writing, blank
-    )
+    if writing.picture is not None:
+        _scroll(picture, draw, writing.picture)
+    else:
+        {"label": _label, "plaque": _board, "board": _board, "banner": _banner}[writing.kind](
+            draw, writing, blank
+        )
     return picture
+
+
+def _scroll(sheet: Image, draw: ImageDraw, file: Path) -> None:
+    """A picture as it is mounted to hang: on paper, in a frame of silk that is widest above. One that cannot be read
+    leaves the paper empty; `hall check` names it."""
+    from PIL import Image, ImageOps
+
+    wide, high = sheet.size
+    side, above, below = round(0.07 * wide), round(0.12 * high), round(0.08 * high)
+    draw.rectangle((0, 0, wide, above), fill=_SILK)
+    draw.rectangle((0, high - below, wide, high), fill=_SILK)
+    draw.rectangle((0, 0, side, high), fill=_SILK)
+    draw.rectangle((wide - side, 0, wide, high), fill=_SILK)
+    room = (wide - 2 * side, high - above - below)
+    try:
+        with Image.open(file) as held:
+            shown = ImageOps.contain(in_eight_bits(held).convert("RGB"), room, Image.Resampling.LANCZOS)
+    except Exception:  # a reader of foreign files may fail in any way
+        return
+    sheet.paste(shown, (side + (room[0] - shown.width) // 2, above + (room[1] - shown.height) // 2))
 
 
 def _fitted(draw: ImageDraw, text: str, size: int, width: float, bold: bool) -> FreeTypeFont:
