@@ -117,7 +117,7 @@ def test_on_a_grid_a_file_is_half_as_large_and_nothing_has_moved(tmp_path: Path)
     rough = ball.vertices + np.random.default_rng(1).normal(0.0, 0.002, ball.vertices.shape)
     body = Surface(rough, np.asarray(ball.faces, np.int32))
     garment = replace(arched(0.05), settled=Settled(Contact(), Phase(1.0), Holds.of(1), Beneath((body,))))
-    step = 2.0**-20
+    step = 2.0**-23
     kept = garment.on_grid(step)
     assert np.abs(kept.positions - garment.positions).max() <= step / 2
     assert kept.on_grid(step).digest() == kept.digest()
@@ -127,7 +127,7 @@ def test_on_a_grid_a_file_is_half_as_large_and_nothing_has_moved(tmp_path: Path)
     for name in ("kept", "whole"):
         with zipfile.ZipFile(tmp_path / f"{name}.npz") as held:
             sizes[name] = held.getinfo("surface0_vertices.npy").compress_size
-    assert sizes["kept"] < 0.6 * sizes["whole"]
+    assert sizes["kept"] < 0.7 * sizes["whole"]
     back = Garment.load(tmp_path / "kept.npz")
     assert back.digest() == kept.digest()
     assert back.settled is not None
