@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["MissingFontError", "Sheet", "Writing", "font_file", "write"]
 
 WIDTH = 2048  # [pixels], and the most it is high: a side that every telephone has
+SMALLEST = 0.02  # of their size writings are made, however many there are
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
 _PAPER, _INK, _FADED = "#CFC5AF", "#15110F", "#241D18"  # labels lie in the light of the spots
@@ -84,7 +85,7 @@ def _fitting(writings: Sequence[Writing]) -> tuple[list[Writing], list[tuple[int
         ]
         if all(wide + 2 * _GAP <= WIDTH for wide, _ in scaled):
             spots, height = _packed(scaled)
-            if height <= WIDTH:
+            if height <= WIDTH or share < SMALLEST:
                 small = [replace(one, size=size) for one, size in zip(writings, scaled, strict=True)]
                 return small, spots, height
         share *= 0.97
