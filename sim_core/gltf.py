@@ -15,7 +15,7 @@ __all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts", "node_matrix", "row_s
 
 VERTICES, INDICES = 34962, 34963  # what a buffer view holds
 FLOAT, U8, U16, U32 = 5126, 5121, 5123, 5125
-COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
+COMPONENTS = {5120: "i1", U8: "u1", 5122: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 HEADER = 20  # bytes ahead of the JSON part: the file's header and the part's own
 MAGIC, JSON_PART = b"glTF", b"JSON"
@@ -187,12 +187,11 @@ class GlbFile:
             shading = normals(vertices, faces) if shading is True else np.asarray(shading)
             attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
         elif colours is not None:
-            if colours.dtype == np.uint8:
-                opaque = np.c_[colours, np.full(len(colours), 255, np.uint8)]
-                attributes["COLOR_0"] = self._accessor(opaque, "VEC4", U8, VERTICES)
-            else:
-                fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
-                attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)
+            component, most = (U8, 255) if colours.dtype == np.uint8 else (U16, 65535)
+            if component == U16:
+                colours = np.round(np.clip(colours, 0, 1) * most)
+            opaque = np.c_[colours, np.full(len(colours), most)].astype(COMPONENTS[component])
+            attributes["COLOR_0"] = self._accessor(opaque, "VEC4", component, VERTICES)
         if uv is not None:
             attributes["TEXCOORD_0"] = self._accessor(uv.astype("<f4"), "VEC2", FLOAT, VERTICES)
         if uv1 is not None:

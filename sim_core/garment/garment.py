@@ -210,7 +210,7 @@ class Garment:
 
     def on_grid(self, step: float) -> Garment:
         """The same garment, each coordinate of it and of what it lies on a multiple of `step` [m], best a power of two:
-        what a simulation leaves in the last digits is no longer kept, and files take half the bytes."""
+        what a simulation leaves in the last digits is no longer kept, and files are smaller for it."""
         settled = self.settled and self.settled.on_grid(step)
         return replace(self, positions=np.rint(self.positions / step) * step, settled=settled)
 

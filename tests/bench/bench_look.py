@@ -23,7 +23,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2]))
@@ -93,21 +95,51 @@ def keep_environment(route) -> None:
     route.fulfill(response=reply, body=text.replace("reflections: false", "reflections: true"))
 
 
-def stand(page, place: dict) -> None:
-    page.evaluate("({x, z, yaw}) => hall.goTo(x, z, yaw)", place)
-    page.wait_for_timeout(600)
+Rounds = dict[str, dict[str, list[float]]]  # hall -> view -> CPU ms a picture in each round
 
 
-def views(page) -> dict[str, dict]:
-    """The entry, and the place before the first exhibit."""
+def in_turn(
+    pages: dict[str, Any], stands: dict[str, dict[str, list[float]]], rounds: int, seconds: float
+) -> Rounds:
+    """What each hall's picture costs at each of its places, [x, z, yaw …] by view, drawn one after the other."""
+    gpu = gpu_process()
+    time.sleep(4)  # the pages' first look at the machine's speed
+    found: Rounds = {name: {view: [] for view in places} for name, places in stands.items()}
+    for number in range(rounds):
+        for view in next(iter(stands.values())):
+            for name, page in pages.items():
+                page.evaluate("(there) => hall.goTo(...there)", stands[name][view])
+                page.wait_for_timeout(600)
+                found[name][view].append(cost(page, gpu, seconds))
+        print(f"round {number + 1} of {rounds}", flush=True)
+    return found
+
+
+def views(page, exhibit: str | None = None) -> dict[str, list[float]]:
+    """The entry, and the place before an exhibit, the first one where none is named."""
     scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
-    stands = """async (scene) => { const {standBefore} = await import("/static/ui/map/geometry.js");
-        return standBefore(scene.exhibits[0], scene); }"""
-    return {"entry": scene["start"], "exhibit": page.evaluate(stands, scene)}
+    start, before = scene["start"], page.evaluate(STANDS)
+    return {
+        "entry": [start["x"], start["z"], start["yaw"]],
+        "exhibit": before[exhibit or scene["exhibits"][0]["id"]][:3],
+    }
 
 
-def measured(rounds: int, seconds: float, content: Path) -> dict[str, dict[str, list[float]]]:
-    """Look -> view -> CPU ms a picture in each round."""
+def bare_page(browser, url: str, prepare: Callable[[Any], None] = lambda page: None) -> Any:
+    """A page in the hall, with nothing laid over the picture; prepare: done to it first."""
+    page = browser.new_context(viewport=VIEW).new_page()
+    prepare(page)
+    enter(page, f"{url}/?lang=en")
+    page.evaluate("() => { document.querySelector('#hall-ui').style.display = 'none'; }")
+    return page
+
+
+def lit_by_itself(page) -> None:
+    page.route("**/quality.js*", keep_environment)
+
+
+def measured(rounds: int, seconds: float, content: Path) -> Rounds:
+    """Of each look, in the same hall at the same places."""
     with contextlib.ExitStack() as stack:
         work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         browser = stack.enter_context(open_browser())
@@ -117,63 +149,37 @@ def measured(rounds: int, seconds: float, content: Path) -> dict[str, dict[str, 
             hall = stack.enter_context(
                 running_hall(content, work / look, program=program, env={"HALL_LOOK": look})
             )
-            page = pages[look] = browser.new_context(viewport=VIEW).new_page()
-            if look in ("beside", "default"):
-                page.route("**/quality.js*", keep_environment)
-            enter(page, f"{hall.url}/?lang=en")
-            page.evaluate("() => { document.querySelector('#hall-ui').style.display = 'none'; }")
-        where, gpu = views(pages["shipped"]), gpu_process()
-        time.sleep(4)  # the pages' first look at the machine's speed
-        found = {look: {view: [] for view in where} for look in LOOKS}
-        for number in range(rounds):
-            for view, place in where.items():
-                for look, page in pages.items():
-                    stand(page, place)
-                    found[look][view].append(cost(page, gpu, seconds))
-            print(f"round {number + 1} of {rounds}", flush=True)
-    return found
+            prepared = (lit_by_itself,) if look in ("beside", "default") else ()
+            pages[look] = bare_page(browser, hall.url, *prepared)
+        where = views(pages["shipped"])
+        return in_turn(pages, dict.fromkeys(LOOKS, where), rounds, seconds)
 
 
-def beside_earlier(
-    rounds: int, seconds: float, halls: dict[str, Path], exhibit: str
-) -> dict[str, dict[str, list[float]]]:
-    """Hall -> view -> CPU ms a picture in each round; halls: checkouts, each with its own content in `assets`."""
+def beside_earlier(rounds: int, seconds: float, halls: dict[str, Path], exhibit: str) -> Rounds:
+    """Of each hall before its own exhibit; halls: checkouts, each with its content in `assets`."""
     program = (sys.executable, "-P", "-m", "hall_app")
     with contextlib.ExitStack() as stack:
         work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         browser = stack.enter_context(open_browser())
-        pages, stands = {}, {}
+        pages = {}
         for name, checkout in halls.items():
             env = {"PYTHONPATH": str(checkout.resolve())}
             hall = stack.enter_context(
                 running_hall(checkout / "assets", work / name, program=program, env=env)
             )
-            page = pages[name] = browser.new_context(viewport=VIEW).new_page()
-            enter(page, f"{hall.url}/?lang=en")
-            page.evaluate("() => { document.querySelector('#hall-ui').style.display = 'none'; }")
-            page.wait_for_timeout(8000)  # an earlier page tells nobody when all has come
-            start = page.evaluate("async () => (await (await fetch('/api/scene')).json()).start")
-            stands[name] = {
-                "entry": [start["x"], start["z"], start["yaw"]],
-                "exhibit": page.evaluate(STANDS)[exhibit],
-            }
-        gpu = gpu_process()
-        found: dict[str, dict[str, list[float]]] = {name: {"entry": [], "exhibit": []} for name in halls}
-        for number in range(rounds):
-            for view in ("entry", "exhibit"):
-                for name, page in pages.items():
-                    page.bring_to_front()
-                    page.evaluate("(there) => hall.goTo(...there)", stands[name][view])
-                    page.wait_for_timeout(600)
-                    found[name][view].append(cost(page, gpu, seconds))
-            print(f"round {number + 1} of {rounds}", flush=True)
-    return found
+            pages[name] = bare_page(browser, hall.url)
+            pages[name].wait_for_timeout(8000)  # an earlier page tells nobody when all has come
+        return in_turn(pages, {name: views(page, exhibit) for name, page in pages.items()}, rounds, seconds)
+
+
+def bests(found: Rounds) -> dict[str, dict[str, float]]:
+    return {name: {view: min(values) for view, values in row.items()} for name, row in found.items()}
 
 
 def earlier(rounds: int, seconds: float, checkout: Path, exhibit: str, path: Path | None) -> int:
     """Measures this hall beside an earlier one and prints both."""
     found = beside_earlier(rounds, seconds, {"now": ROOT, "before": checkout}, exhibit)
-    best = {name: {view: min(values) for view, values in row.items()} for name, row in found.items()}
+    best = bests(found)
     share = {view: best["now"][view] / best["before"][view] for view in best["now"]}
     print(f"\n{'CPU ms a picture, best of ' + str(rounds):34}{'entry':>10}{exhibit:>10}")
     for name, row in best.items():
@@ -191,9 +197,9 @@ def checkout_commit(checkout: Path) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
-def summary(found: dict[str, dict[str, list[float]]]) -> dict:
+def summary(found: Rounds) -> dict:
     """Best of the rounds, and the shipped look's share of the others, the worst of the views."""
-    best = {look: {view: min(values) for view, values in row.items()} for look, row in found.items()}
+    best = bests(found)
     share = {
         other: max(best["shipped"][view] / best[other][view] for view in best[other]) for other in LOOKS[1:]
     }

@@ -112,7 +112,7 @@ def test_garment_file_round_trip(tmp_path: Path) -> None:
     assert moved.digest() != garment.digest()
 
 
-def test_on_a_grid_a_file_is_half_as_large_and_nothing_has_moved(tmp_path: Path) -> None:
+def test_on_a_grid_a_file_is_a_third_smaller_and_nothing_has_moved(tmp_path: Path) -> None:
     ball = trimesh.creation.icosphere(4)
     rough = ball.vertices + np.random.default_rng(1).normal(0.0, 0.002, ball.vertices.shape)
     body = Surface(rough, np.asarray(ball.faces, np.int32))

@@ -74,9 +74,8 @@ def test_floor_and_wall_meet_without_a_line():
     picture = render(
         [Surface(SQUARE, FACES, (0.8, 0.2, 0.2))], Camera((0.0, 0.9, 3.4), (0.0, 0.6, 0.0)), (240, 180)
     )
-    beside = picture[:, [*range(20), *range(230, 240)]].astype(
-        int
-    )  # where nothing stands and no shadow falls
+    # Where nothing stands and no shadow falls.
+    beside = picture[:, [*range(20), *range(230, 240)]].astype(int)
     assert np.abs(np.diff(beside, axis=0)).max() <= 2
     under = picture[:, 120].astype(int)
     assert under.min(0).tolist() < beside.min((0, 1)).tolist()

@@ -28,15 +28,15 @@ LAYER_3 = 0b01  # MPEG audio's name for what .mp3 holds
 
 def media_problems(content: Content) -> list[Problem]:
     """Media whose ending the hall does not serve, or whose content is not what the ending says."""
+    house = (
+        ("hall.toml", hall_files(content.hall), "audio"),
+        ("plan.toml", plan_files(content.plan), "picture"),
+    )
     found = [
         problem
-        for key, path in hall_files(content.hall)
-        if (problem := _problem("hall.toml", key, path, content.folder / path, "audio"))
-    ]
-    found += [
-        problem
-        for key, path in plan_files(content.plan)
-        if (problem := _problem("plan.toml", key, path, content.folder / path, "picture"))
+        for file, named, kind in house
+        for key, path in named
+        if (problem := _problem(file, key, path, content.folder / path, kind))
     ]
     for exhibit in content.exhibits:
         for file, key, path, kind in _named(exhibit):

@@ -5,7 +5,16 @@ from __future__ import annotations
 import posixpath
 
 from hall_app.content.bakes.inputs import scan_files
-from hall_app.content.files import BAKED, SHEET, TEXTS, exhibit_files, plan_files, tracked_beside, walk_files
+from hall_app.content.files import (
+    BAKED,
+    SHEET,
+    TEXTS,
+    exhibit_files,
+    hall_files,
+    plan_files,
+    tracked_beside,
+    walk_files,
+)
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 from hall_app.content.views.markdown import pictures_in
@@ -24,7 +33,7 @@ def unused_problems(content: Content) -> list[Problem]:
                 found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
     media = content.folder / "media"
     if media.is_dir():
-        named = {*content.hall.music, *(path for _, path in plan_files(content.plan))}
+        named = {path for _, path in (*hall_files(content.hall), *plan_files(content.plan))}
         for path in walk_files(media):
             name = path.relative_to(content.folder).as_posix()
             if name not in named:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from hall_app.content.files import file_problem, hall_files, plan_files, revision
@@ -49,11 +50,15 @@ def _load_house(folder: Path) -> tuple[HallFile | None, PlanFile | None, list[Pr
             problems += plan_problems(plan)
         except Exception as error:  # geometry of whatever was written
             problems.append(unforeseen("plan.toml", error))
-        hung = [file_problem("plan.toml", key, folder, path, root=folder) for key, path in plan_files(plan)]
-        problems += [problem for problem in hung if problem]
+        problems += _lost(folder, "plan.toml", plan_files(plan))
     if hall is not None:
-        named = [file_problem("hall.toml", key, folder, path, root=folder) for key, path in hall_files(hall)]
-        problems += [problem for problem in named if problem]
+        problems += _lost(folder, "hall.toml", hall_files(hall))
     if hall is not None and plan is not None and not problems:
         problems += start_problems(hall, plan)
     return (None, None, problems) if problems else (hall, plan, problems)
+
+
+def _lost(folder: Path, toml: str, named: Iterable[tuple[str, str]]) -> list[Problem]:
+    """What keeps files that a table names, (key, path), from being used."""
+    found = [file_problem(toml, key, folder, path, root=folder) for key, path in named]
+    return [problem for problem in found if problem]

@@ -76,19 +76,21 @@ def write(writings: Sequence[Writing], *, blank: bool = False) -> Sheet:
 
 
 def _fitting(writings: Sequence[Writing]) -> tuple[list[Writing], list[tuple[int, int]], int]:
-    """All of them a little smaller, where they would not lie on one sheet otherwise; where each lies, and the sheet's
-    height."""
+    """What is wider than the sheet smaller by itself, and all of them a little, where they would not lie on one sheet
+    otherwise; where each lies, and the sheet's height."""
+    narrow = [_smaller(one, min(1.0, (WIDTH - 2 * _GAP) / one.size[0])) for one in writings]
     share = 1.0
     while True:
-        scaled = [
-            (max(1, round(share * one.size[0])), max(1, round(share * one.size[1]))) for one in writings
-        ]
-        if all(wide + 2 * _GAP <= WIDTH for wide, _ in scaled):
-            spots, height = _packed(scaled)
-            if height <= WIDTH or share < SMALLEST:
-                small = [replace(one, size=size) for one, size in zip(writings, scaled, strict=True)]
-                return small, spots, height
+        fitting = [_smaller(one, share) for one in narrow]
+        spots, height = _packed([one.size for one in fitting])
+        if height <= WIDTH or share < SMALLEST:
+            return fitting, spots, height
         share *= 0.97
+
+
+def _smaller(writing: Writing, share: float) -> Writing:
+    wide, high = (max(1, round(share * side)) for side in writing.size)
+    return replace(writing, size=(wide, high))
 
 
 def _packed(sizes: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], int]:
@@ -162,10 +164,7 @@ def _scroll(sheet: Image, draw: ImageDraw, file: Path) -> None:
 
     wide, high = sheet.size
     side, above, below = round(0.07 * wide), round(0.12 * high), round(0.08 * high)
-    draw.rectangle((0, 0, wide, above), fill=_SILK)
-    draw.rectangle((0, high - below, wide, high), fill=_SILK)
-    draw.rectangle((0, 0, side, high), fill=_SILK)
-    draw.rectangle((wide - side, 0, wide, high), fill=_SILK)
+    _mount(draw, sheet.size, side, above, below)
     room = (wide - 2 * side, high - above - below)
     try:
         with Image.open(file) as held:
@@ -173,6 +172,18 @@ def _scroll(sheet: Image, draw: ImageDraw, file: Path) -> None:
     except Exception:  # a reader of foreign files may fail in any way
         return
     sheet.paste(shown, (side + (room[0] - shown.width) // 2, above + (room[1] - shown.height) // 2))
+
+
+def _mount(draw: ImageDraw, size: tuple[int, int], side: int, above: int, below: int) -> None:
+    """The frame of silk round the paper of a scroll, as wide as told [pixels]."""
+    wide, high = size
+    for frame in (
+        (0, 0, wide, above),
+        (0, high - below, wide, high),
+        (0, 0, side, high),
+        (wide - side, 0, wide, high),
+    ):
+        draw.rectangle(frame, fill=_SILK)
 
 
 def _fitted(draw: ImageDraw, text: str, size: int, width: float, bold: bool) -> FreeTypeFont:
@@ -217,11 +228,7 @@ def _board(draw: ImageDraw, writing: Writing, blank: bool) -> None:
 def _banner(draw: ImageDraw, writing: Writing, blank: bool) -> None:
     wide, high = writing.size
     mount = round(0.10 * high)
-    for low, top in ((0, mount), (high - mount, high)):
-        draw.rectangle((0, low, wide, top), fill=_SILK)
-    edge = round(0.05 * wide)
-    draw.rectangle((0, 0, edge, high), fill=_SILK)
-    draw.rectangle((wide - edge, 0, wide, high), fill=_SILK)
+    _mount(draw, writing.size, round(0.05 * wide), mount, mount)
     if blank:
         return
     letters = len(writing.zh)
