@@ -38,12 +38,12 @@ def look_otherwise(how: str) -> None:
     def configured(self) -> None:
         configure(self)
         scene = self.server.scene
-        add_glb = scene.add_glb
+        show = self.pieces.show
 
-        def add(name: str, data: bytes, *args, **kwargs):
-            return add_glb(name, for_lights(data) if name in ("/room", "/studio") else data, *args, **kwargs)
+        def lit(node: str, model: bytes, **kwargs):
+            return show(node, for_lights(model) if node in ("/room", "/studio") else model, **kwargs)
 
-        scene.add_glb = add  # pyright: ignore[reportAttributeAccessIssue]
+        self.pieces.show = lit  # pyright: ignore[reportAttributeAccessIssue]
         for light in ("/light/sky", "/light/key"):
             scene.remove_by_name(light)
         if how in ("ambient", "beside"):
