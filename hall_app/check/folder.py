@@ -20,6 +20,7 @@ from hall_app.check.hall.fittings import fitting_problems
 from hall_app.check.hall.questionnaires import questionnaire_problems, unstated
 from hall_app.check.hall.reach import reach_problems
 from hall_app.check.hall.room import room_problems
+from hall_app.check.hall.signs import sign_remarks
 from hall_app.content.folder import Content
 from hall_app.content.loading import load, load_exhibit_problems
 from hall_app.content.problems import ContentError, Problem
@@ -77,7 +78,7 @@ def hints(folder: Path) -> list[Problem]:
         content = load(folder)
     except ContentError:
         return unstated(folder)  # what is wrong is said by the check
-    return [*unstated(folder), *scan_remarks(content)]
+    return [*unstated(folder), *scan_remarks(content), *_looked(sign_remarks, content)]
 
 
 def _looked(look: Callable[[Content], list[Problem]], content: Content) -> list[Problem]:

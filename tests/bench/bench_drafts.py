@@ -1,6 +1,7 @@
 """Drafts of other programs: how many are answered, and time and memory of what a large one tells.
 
 python tests/bench/bench_drafts.py [--folder FOLDER] [--quick] [--json FILE] [--peers [FOLDER]]
+python tests/bench/bench_drafts.py --rest [--folder FOLDER] [--json FILE]     how soon their yarns are at rest
 
 Every different .wif and .dtx in a folder is given to `simcore weave --json`; with --peers to dtx_to_wif and pyweaving
 as well, in an environment of their own. The 72 of the README lie in the source distributions of dtx_to_wif 4.7.1 and
@@ -8,10 +9,15 @@ base_loom_server 1.2.5 (`pip download --no-deps --no-binary :all: dtx_to_wif==4.
 Then drafts of up to 20,000 ends and picks are made, and each is answered by a process of its own: CPU seconds of
 reading, CPU seconds of all that is told beside it, peak memory. What they tell is compared with a count on the cloth
 woven out, where that fits into memory.
+
+With --rest alone the traditional drafts of weavers_drafts.py and those of the folder, of up to 100 x 100 crossings, are
+brought to rest by `simcore weave FILE --relax --json`, one after the other: seconds of stage B on one core, and what
+the command says of a cloth that does not rest.
 """
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -20,6 +26,7 @@ from pathlib import Path
 import numpy as np
 from peers import add_peers, peer_python
 from signature import signed
+from weavers_drafts import DRAFTS
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parent / "sim_core" / "drafts"
@@ -131,6 +138,67 @@ def large(quick: bool) -> dict[str, dict]:
     return made
 
 
+ONE_CORE = os.environ | {
+    name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+}
+MOST = 10_000  # crossings of a repeat that is brought to rest here
+ASKED = 60.0  # [s]
+
+
+def ordinary(folder: Path) -> dict[str, bytes]:
+    """WIF and .dtx by name, each different content once: the traditional drafts, then those of the folder."""
+    found = {f"{name}.wif": make().encode() for name, make in DRAFTS.items()}
+    seen = set(found.values())
+    for path in sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".wif", ".dtx")):
+        if (data := path.read_bytes()) not in seen:
+            seen.add(data)
+            found[str(path.relative_to(folder))] = data
+    return found
+
+
+def rests(folder: Path) -> dict[str, dict]:
+    """Of each draft small enough that can be read: crossings of its repeat, seconds, residual, and why not at rest."""
+    found: dict[str, dict] = {}
+    with tempfile.TemporaryDirectory() as place:
+        for name, data in ordinary(folder).items():
+            path = Path(place) / f"draft{Path(name).suffix.lower()}"
+            path.write_bytes(data)
+            words = [sys.executable, "-m", "sim_core.cli", "weave", str(path), "--json"]
+            told = subprocess.run(words, capture_output=True, text=True, check=False)
+            if told.returncode:
+                continue  # cannot be read: counted by the other table
+            repeat = json.loads(told.stdout)["repeat"]
+            crossings = repeat["ends"] * repeat["picks"]
+            if crossings > MOST:
+                continue
+            done = subprocess.run(
+                [*words, "--relax"], capture_output=True, text=True, check=False, env=ONE_CORE
+            )
+            facts = json.loads(done.stdout)
+            found[name] = {"crossings": crossings} | {
+                key: facts[key] for key in ("seconds", "residual", "note") if key in facts
+            }
+            print(rest_line(name, found[name]), flush=True)
+    return found
+
+
+def rest_line(name: str, row: dict) -> str:
+    seconds = f"{row['seconds']:7.1f} s" if "seconds" in row else f"{'-':>9}"
+    return f"{name:<52} {row['crossings']:>6,} {seconds}  {row.get('note', '')}"
+
+
+def told_rests(found: dict[str, dict]) -> str:
+    """One line: how many rest within the time asked, and how many are said not to be able to."""
+    soon = [row for row in found.values() if "note" not in row and row["seconds"] <= ASKED]
+    slow = [name for name, row in found.items() if "note" not in row and row["seconds"] > ASKED]
+    said = sum("note" in row for row in found.values())
+    slowest = max((row["seconds"] for row in soon), default=0.0)
+    return (
+        f"{len(found)} drafts: {len(soon)} at rest within {ASKED:.0f} s of one core (the slowest of them "
+        f"{slowest:.0f} s), {said} said not to rest, and why; later: {', '.join(slow) or 'none'}"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -138,8 +206,18 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=FOLDER, help="drafts to be answered")
     parser.add_argument("--quick", action="store_true", help="nothing above 4,000 x 4,000")
     parser.add_argument("--json", type=Path, metavar="FILE")
+    parser.add_argument(
+        "--rest", action="store_true", help="how soon yarns of ordinary drafts are at rest, and no more"
+    )
     add_peers(parser, "beside dtx_to_wif and pyweaving")
     args = parser.parse_args()
+    if args.rest:
+        resting = rests(args.folder)
+        print(told_rests(resting))
+        if args.json:
+            before = json.loads(args.json.read_text("utf-8")) if args.json.exists() else {}
+            args.json.write_text(json.dumps(before | {"rests": signed(resting)}, indent=2) + "\n", "utf-8")
+        return
     told = answered(args.folder)
     found: dict = {"files": len(told), "answered": sum(not text for text in told.values()), "refused": {}}
     found["refused"] = {Path(path).name: text for path, text in told.items() if text}

@@ -26,6 +26,14 @@ PIECES = {
     "laylight": "[[laylight]]\nat = [0, 0]\nsize = [3, 3]\n",
     "curtain": "[[curtain]]\nfrom = [3, 0]\nto = [5, 0]\n",
     "sign": '[[sign]]\nkind = "plaque"\nat = [-2, -2.9]\nheight = 3.0\nsize = [1.2, 0.5]\n',
+    "low wall": "[[wall]]\nfrom = [2, 2]\nto = [4, 2]\nheight = 2.0\n\n"
+    '[[sign]]\nkind = "banner"\nat = [3, 2.1]\nheight = 0.9\nsize = [0.3, 1.4]\n',
+    "gap": "[[wall]]\nfrom = [1, -3]\nto = [4, -3]\n\n"
+    '[[sign]]\nkind = "plaque"\nat = [1.5, -2.9]\nheight = 3.0\nsize = [1.4, 0.5]\n',
+    "window and sign": '[[opening]]\nkind = "window"\nfrom = [-4, -3]\nto = [-2, -3]\nsill = 1.0\nheight = 1.5\n\n'
+    '[[sign]]\nkind = "plaque"\nat = [-3, -2.9]\nheight = 3.0\nsize = [1.2, 0.5]\n',
+    "two signs": '[[sign]]\nkind = "plaque"\nat = [-2, -2.9]\nheight = 3.0\nsize = [1.2, 0.5]\n\n'
+    '[[sign]]\nkind = "banner"\nat = [-0.6, -2.9]\nheight = 2.2\nsize = [0.4, 1.4]\n',
 }
 FAULTS = {
     "longer than its wall": ("window", "from = [-4, -3]\nto = [-2, -3]", "from = [-9, -3]\nto = [9, -3]", "opening[1]",
@@ -47,6 +55,21 @@ FAULTS = {
     "sign off the end": ("sign", "at = [-2, -2.9]", "at = [0.9, -2.9]", "sign[1].at", "an edge is 0.50 m from any"),
     "sign across its wall": ("sign", "height = 3.0", "facing = 90\nheight = 3.0", "sign[1].at", "off its wall"),
     "sign outside": ("sign", "at = [-2, -2.9]", "at = [-2, -30]", "sign[1].at", "hangs outside the hall"),
+    "sign in its wall": ("sign", "at = [-2, -2.9]", "at = [-2, -3]", "sign[1].at", "hidden inside a wall"),
+    "sign into its wall": ("sign", "height = 3.0", "facing = 180\nheight = 3.0", "sign[1].at", "hidden inside a wall"),
+    "sign on the floor": ("sign", "height = 3.0\nsize = [1.2, 0.5]", "height = 0.5\nsize = [1.2, 1.2]",
+                          "sign[1].height",
+                          "reaches 0.10 m below the floor"),
+    "sign over a low wall": ("low wall", "height = 2.0", "height = 1.2", "sign[1].height",
+                             "up to 1.60 m, its wall to 1.20 m"),
+    "sign across a gap": ("gap", "from = [1, -3]\nto = [4", "from = [2, -3]\nto = [4", "sign[1].at",
+                          "hangs across a gap"),
+    "sign before a window": ("window and sign", "height = 3.0", "height = 2.4", "sign[1].at",
+                             "hangs before the window"),
+    "sign over a sign": ("two signs", "at = [-0.6, -2.9]", "at = [-1.5, -2.9]", "sign[2].at", "hangs over sign[1]"),
+    "letters too small": ("sign", "height = 3.0", 'height = 3.0\ntext = "' + 60 * "衣" + '"', "sign[1].text",
+                          "its 60 letters would be 16 mm high"),
+    "no letter": ("sign", "height = 3.0", 'height = 3.0\ntext = "衣\U0001f458"', "sign[1].text", "cannot be drawn"),
     "sign too high": ("sign", "height = 3.0", "height = 4.2", "sign[1].height", "up to 4.45 m, the ceiling is at 4.3"),
 }  # fmt: skip
 

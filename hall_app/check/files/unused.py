@@ -17,27 +17,30 @@ from hall_app.content.files import (
 )
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
+from hall_app.content.schema.plan import PAINTED
 from hall_app.content.views.markdown import pictures_in
 
 
 def unused_problems(content: Content) -> list[Problem]:
     """Files in the exhibits' folders and in media/ that no text and no table refers to."""
     found = []
+    hung = {path for _, path in plan_files(content.plan)}
     for exhibit in content.exhibits:
         if exhibit.toml in {problem.file for problem in content.problems}:
             continue  # its last good version is shown: what the new one names is not known
-        used = _used(exhibit)
+        used = _used(exhibit) | {path.removeprefix(f"exhibits/{exhibit.id}/") for path in hung}
         for path in walk_files(exhibit.folder):
             name = path.relative_to(exhibit.folder).as_posix()
             if name not in used and not (exhibit.file.baked_key and _built(name)):
                 found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
     media = content.folder / "media"
     if media.is_dir():
-        named = {path for _, path in (*hall_files(content.hall), *plan_files(content.plan))}
+        named = hung | {path for _, path in hall_files(content.hall)}
         for path in walk_files(media):
             name = path.relative_to(content.folder).as_posix()
             if name not in named:
-                found.append(_unused(name, "hall.toml"))
+                table = "plan.toml" if path.suffix.lower() in PAINTED else "hall.toml"
+                found.append(_unused(name, table))
     return found
 
 

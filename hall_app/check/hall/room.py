@@ -39,7 +39,7 @@ def room_problems(content: Content) -> list[Problem]:
 
 
 def _weight(info: GlbInfo) -> list[Problem]:
-    found, fix = [], "take windows, lattice walls or curtains out"
+    found, fix = [], "take windows, lattice walls, curtains or hung pictures out"
     if info.triangles > TRIANGLES:
         what = f"the room has {info.triangles} triangles, at most {TRIANGLES}"
         found.append(Problem("plan.toml", "", what, fix))

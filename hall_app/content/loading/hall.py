@@ -50,12 +50,14 @@ def _load_house(folder: Path) -> tuple[HallFile | None, PlanFile | None, list[Pr
             problems += plan_problems(plan)
         except Exception as error:  # geometry of whatever was written
             problems.append(unforeseen("plan.toml", error))
-        problems += _lost(folder, "plan.toml", plan_files(plan))
     if hall is not None:
         problems += _lost(folder, "hall.toml", hall_files(hall))
     if hall is not None and plan is not None and not problems:
         problems += start_problems(hall, plan)
-    return (None, None, problems) if problems else (hall, plan, problems)
+    if hall is None or plan is None or problems:
+        return None, None, problems
+    # A picture that is lost keeps nobody out: its scroll hangs empty.
+    return hall, plan, _lost(folder, "plan.toml", plan_files(plan))
 
 
 def _lost(folder: Path, toml: str, named: Iterable[tuple[str, str]]) -> list[Problem]:

@@ -15,8 +15,9 @@ from hall_app.content.problems import Problem
 
 Location = tuple[int | str, ...]
 
+LANGUAGES = ("zh", "en")
 REMEDIES = {
-    "blank_text": "write the text, in both languages",
+    "blank_text": "write the text",
     "unsafe_path": "copy the file into the folder and write its path from there, with / and without ..",
     "one_footprint": "keep one of them and remove the others",
     "one_model": 'keep one: outfit = "outfits/….toml", scan = "….glb", or a [models] table',
@@ -26,6 +27,7 @@ REMEDIES = {
     "body_shape": 'write shape = "round" with radius, or shape = "box" with size = [width, depth]',
     "zero_length": "give the wall two different ends",
     "sign_shows": 'write kind = "picture" with picture = "media/….jpg", or remove picture',
+    "sign_silent": "remove text",
     "sign_painted": "save it as .jpg, .png or .webp",
     "eye_order": "write min ≤ default ≤ max, in metres",
     "own_address": "write it whole, e.g. https://hall.example.org, without ? and #",
@@ -76,11 +78,16 @@ def _problem(file: str, model: type[BaseModel], detail: ErrorDetails) -> Problem
         close = difflib.get_close_matches(str(location[-1]), known, n=1)
         fix = f"did you mean {close[0]}?" if close else f"remove it; known keys are {', '.join(known)}"
         return Problem(file, key, "unknown key", fix)
+    if kind == "missing" and isinstance(location[-1], int):
+        return Problem(file, key, "missing", REMEDIES["too_short"])
     if kind == "missing":
         return Problem(file, key, "missing", f"add {location[-1]} = … to the file (its form: README.md)")
     given = detail.get("input")
     got = f" (got {given!r})" if isinstance(given, str | int | float | bool) else ""
-    return Problem(file, key, message[:1].lower() + message[1:] + got, _remedy(kind))
+    what = message[:1].lower() + message[1:] + got
+    if kind == "blank_text" and location[-1] in LANGUAGES:
+        return Problem(file, key, what, "write the text, in both languages")
+    return Problem(file, key, what, _remedy(kind))
 
 
 def _remedy(kind: str) -> str:

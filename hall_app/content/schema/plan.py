@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from hall_app.content.schema.values import Bilingual, ContentPath, Metres, Point, Ring, Table, Text
 
+Hung = Annotated[float, Field(ge=0.1, le=20)]  # [m] a side of what hangs on a wall
 PAINTED = (".jpg", ".jpeg", ".png", ".webp")  # what the room's letters can lie beside on one sheet
 
 
@@ -119,8 +120,8 @@ class Sign(Table):
     kind: Literal["plaque", "banner", "picture"] = Field(description="plaque, banner, or picture on a scroll")
     at: Point = Field(description="the wall's face it hangs on, [x, z]")
     facing: float = Field(0.0, description="degrees its front is turned; 0 looks to +z")
-    height: Annotated[float, Field(ge=2.0, le=20)] = Field(description="height of its middle [m]")
-    size: tuple[Metres, Metres] = Field(description="width and height [m]")
+    height: Annotated[float, Field(ge=0.5, le=20)] = Field(description="height of its middle [m]")
+    size: tuple[Hung, Hung] = Field(description="width and height [m]")
     text: Text | None = Field(None, description="what a plaque or banner says; without it the hall's title")
     picture: ContentPath | None = Field(
         None, description="of a picture: the file, from the content folder on; .jpg, .png or .webp"
@@ -128,10 +129,12 @@ class Sign(Table):
 
     @model_validator(mode="after")
     def _says_or_shows(self) -> Sign:
-        if (self.kind == "picture") != (self.picture is not None) or (self.picture and self.text):
+        if (self.kind == "picture") != (self.picture is not None):
             raise PydanticCustomError(
-                "sign_shows", "a sign of kind picture has a picture and no text, any other has none"
+                "sign_shows", "a sign of kind picture has a picture, any other has none"
             )
+        if self.picture and self.text:
+            raise PydanticCustomError("sign_silent", "a picture that hangs in the hall has no text")
         if self.picture and not self.picture.lower().endswith(PAINTED):
             raise PydanticCustomError("sign_painted", "a picture that hangs in the hall is of pixels")
         return self

@@ -11,24 +11,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hall_app.content.files import file_problem
 from hall_app.room.patch import Frame, Patch, box, quad, strip, tube
 from hall_app.room.structure.frame import beams_of, columns_of
 from hall_app.room.structure.regions import Regions, bay_height
-from hall_app.room.surface.lettering import Sheet, Writing
+from hall_app.room.surface.lettering import SCROLLS, Sheet, Writing
 
 if TYPE_CHECKING:
     from hall_app.content.folder import Exhibit
     from hall_app.content.schema import Bay, Bilingual, PlanFile, Sign
 
-__all__ = ["Board", "boards_of", "signs_of"]
+__all__ = ["OUT", "PIXELS", "Board", "boards_of", "signs_of"]
 
 Floats = NDArray[np.float64]
 _LABEL, _SMALL = (0.52, 0.17), (0.36, 0.13)  # [m]
 _POST = 0.92  # [m] height of a label's middle above the floor or the booth it stands on
 _POST_RADIUS = 0.011  # [m]
 _ASKEW = 20.0  # [deg] from its booth's front, beyond which an exhibit faces across it
-SCROLLS = ("banner", "picture")  # hang from a rod and are weighed down by one
-_PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340, "picture": 310}  # per metre
+OUT = {"plaque": 0.10, "banner": 0.04, "picture": 0.04}  # [m] a sign hangs before its wall
+PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340, "picture": 310}  # per metre
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,17 +56,23 @@ def boards_of(
 
 
 def _writing(kind, zh: str, en: str, size: Sequence[float], picture: Path | None = None) -> Writing:
-    scale = _PIXELS[kind]
-    return Writing(kind, zh, en, (round(size[0] * scale), round(size[1] * scale)), picture)
+    scale = PIXELS[kind]
+    wide, high = (max(1, round(side * scale)) for side in size)
+    return Writing(kind, zh, en, (wide, high), picture)
 
 
 def _hung(sign: Sign, title: Bilingual, folder: Path) -> Board:
     zh, en = (sign.text, "") if sign.text else (title.zh, title.en)
-    picture = folder / sign.picture if sign.picture else None
-    out = 0.10 if sign.kind == "plaque" else 0.04
-    frame = Frame.on_floor(sign.at, sign.facing, sign.height).moved(z=out)
+    picture = _file(folder, sign.picture) if sign.picture else None
+    frame = Frame.on_floor(sign.at, sign.facing, sign.height).moved(z=OUT[sign.kind])
     tilt = -8.0 if sign.kind == "plaque" else 0.0
     return Board(_writing(sign.kind, zh, en, sign.size, picture), frame, sign.size, tilt)
+
+
+def _file(folder: Path, path: str) -> Path | None:
+    """Where a picture lies; None where there is none of the folder's own, and its scroll stays empty."""
+    lost = file_problem("plan.toml", "picture", folder, path, root=folder)
+    return None if lost else folder / path
 
 
 def _label(exhibit: Exhibit, plan: PlanFile, *, alone: bool) -> Board:

@@ -22,6 +22,7 @@ __all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
 _TEXTURE_QUALITY, _SHEET_QUALITY = 87, 70
+_SHEET_BYTES, _LEAST_QUALITY = 186_000, 30  # photographs weigh more than letters do
 _SHADED_SHEET_QUALITY = 72  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
@@ -72,9 +73,7 @@ def _material(glb: GlbFile, name: str, room: Room, patches: list[Patch], quality
     material = MATERIALS[name]
     look: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
     if material.texture == "signs":
-        look["baseColorTexture"] = glb.picture(
-            _encoded(room.sheet.picture, "WEBP", quality=quality, method=6), "image/webp"
-        )
+        look["baseColorTexture"] = glb.picture(_sheet(room.sheet.picture, quality), "image/webp")
     elif material.texture is not None:
         look["baseColorTexture"] = glb.picture(_tile(material.texture, material.colour), "image/jpeg")
     else:
@@ -87,6 +86,15 @@ def _material(glb: GlbFile, name: str, room: Room, patches: list[Patch], quality
             "extensions": {_UNLIT: {}},
         }
     )
+
+
+def _sheet(picture: NDArray[np.uint8], quality: int) -> bytes:
+    """The picture of signs as WebP, coarser where it would weigh too much."""
+    while True:
+        made = _encoded(picture, "WEBP", quality=quality, method=6)
+        if len(made) <= _SHEET_BYTES or quality <= _LEAST_QUALITY:
+            return made
+        quality -= 6
 
 
 @lru_cache(maxsize=64)

@@ -13,22 +13,28 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hall_app.content.models.pictures import in_eight_bits
+from hall_app.room.surface.packing import packed
+from hall_app.room.surface.scrolls import PAPER, hung_picture, mount
 
 if TYPE_CHECKING:
     from PIL.Image import Image
     from PIL.ImageDraw import ImageDraw
     from PIL.ImageFont import FreeTypeFont
 
-__all__ = ["MissingFontError", "Sheet", "Writing", "font_file", "write"]
+__all__ = ["SCROLLS", "MissingFontError", "Sheet", "Writing", "font_file", "letter_size", "shrunk", "write"]
 
 WIDTH = 2048  # [pixels], and the most it is high: a side that every telephone has
-SMALLEST = 0.02  # of their size writings are made, however many there are
+SCROLLS = ("banner", "picture")  # hang from a rod; larger than what is read, they give way first
+ALL = (*SCROLLS, "label", "plaque", "board")
+# What gets smaller where there is too much for a sheet, and to what share of what it was: labels are to be read.
+GIVE_WAY = ((SCROLLS, 0.9), (ALL, 0.94), (SCROLLS, 0.5), (ALL, 0.02))
+LEAST = 12  # [pixels] letters are high, where their board is large enough
+# Silk at each end of a banner, of its length; and how many times as much of it bears no letters.
+_RODS, _NOT_WRITTEN = 0.10, 3.5
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
 _PAPER, _INK, _FADED = "#CFC5AF", "#15110F", "#241D18"  # labels lie in the light of the spots
-_GROUND, _GOLD, _SEAL, _SILK = "#241512", "#CFA85A", "#9E2B25", "#5E7276"
-_SCROLL = "#EFE6D2"
+_GROUND, _GOLD, _SEAL = "#241512", "#CFA85A", "#9E2B25"
 
 
 class MissingFontError(RuntimeError):
@@ -60,50 +66,63 @@ def write(writings: Sequence[Writing], *, blank: bool = False) -> Sheet:
 
     Raises MissingFontError naming the package to install.
     """
-    from PIL import Image
+    from PIL import ImageColor
 
-    writings, spots, height = _fitting(writings)
-    sheet = Image.new("RGB", (WIDTH, height), _PAPER)
+    fitting, spots, height = _fitting(writings)
+    sheet = np.full((height, WIDTH, 3), ImageColor.getrgb(_PAPER), np.uint8)
     places = []
-    for writing, (x, y) in zip(writings, spots, strict=True):
-        picture = _drawn(writing, blank)
+    for writing, (x, y) in zip(fitting, spots, strict=True):
         wide, high = writing.size
-        rim = picture.resize((wide + 2 * _GAP, high + 2 * _GAP))
-        sheet.paste(rim, (x - _GAP, y - _GAP))
-        sheet.paste(picture, (x, y))
+        picture = np.pad(
+            np.asarray(_drawn(writing, blank)), ((_GAP, _GAP), (_GAP, _GAP), (0, 0)), mode="edge"
+        )
+        sheet[y - _GAP : y + high + _GAP, x - _GAP : x + wide + _GAP] = picture
         places.append((x / WIDTH, y / height, (x + wide) / WIDTH, (y + high) / height))
-    return Sheet(np.asarray(sheet), tuple(places))
+    return Sheet(sheet, tuple(places))
+
+
+def shrunk(writings: Sequence[Writing]) -> tuple[float, float]:
+    """Of what they ask for, how large scrolls and all others are drawn on one sheet, 0 to 1: the smallest of each.
+
+    What is larger than the sheet by itself does not count: it takes nothing from the others.
+    """
+    least = [1.0, 1.0]
+    for asked, drawn in zip(_by_themselves(writings), _fitting(writings)[0], strict=True):
+        which = asked.kind not in SCROLLS
+        least[which] = min(least[which], max(drawn.size) / max(asked.size))
+    return least[0], least[1]
+
+
+def _by_themselves(writings: Sequence[Writing]) -> list[Writing]:
+    """What is larger than the sheet smaller by itself."""
+    return [_smaller(one, min(1.0, (WIDTH - 2 * _GAP) / max(one.size))) for one in writings]
 
 
 def _fitting(writings: Sequence[Writing]) -> tuple[list[Writing], list[tuple[int, int]], int]:
-    """What is wider than the sheet smaller by itself, and all of them a little, where they would not lie on one sheet
-    otherwise; where each lies, and the sheet's height."""
-    narrow = [_smaller(one, min(1.0, (WIDTH - 2 * _GAP) / one.size[0])) for one in writings]
-    share = 1.0
-    while True:
-        fitting = [_smaller(one, share) for one in narrow]
-        spots, height = _packed([one.size for one in fitting])
-        if height <= WIDTH or share < SMALLEST:
-            return fitting, spots, height
-        share *= 0.97
+    """The writings as large as they lie on one sheet, scrolls smaller than they ask before labels are; where each lies,
+    and the sheet's height (a multiple of 64)."""
+    shown = _by_themselves(writings)
+    spots, filled = _spots(shown)
+    for kinds, smallest in GIVE_WAY:
+        room = [one.size[0] * one.size[1] for one in shown if one.kind in kinds]
+        others = sum(one.size[0] * one.size[1] for one in shown) - sum(room)
+        if filled <= WIDTH or not room:
+            continue
+        before, share = shown, min(1.0, max(smallest, (max(0, WIDTH**2 - others) / sum(room)) ** 0.5))
+        while filled > WIDTH and share >= smallest:
+            shown = [_smaller(one, share) if one.kind in kinds else one for one in before]
+            spots, filled = _spots(shown)
+            share *= 0.985
+    return shown, spots, max(64, -(-filled // 64) * 64)
+
+
+def _spots(writings: Sequence[Writing]) -> tuple[list[tuple[int, int]], int]:
+    return packed([one.size for one in writings], WIDTH, _GAP)
 
 
 def _smaller(writing: Writing, share: float) -> Writing:
     wide, high = (max(1, round(share * side)) for side in writing.size)
     return replace(writing, size=(wide, high))
-
-
-def _packed(sizes: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], int]:
-    """Upper left corners, the tallest first and each as high up as there is room, and the sheet's height (a multiple
-    of 64)."""
-    spots, filled = [(0, 0)] * len(sizes), np.zeros(WIDTH, int)
-    for index in sorted(range(len(sizes)), key=lambda k: (-sizes[k][1], k)):
-        wide, high = (side + 2 * _GAP for side in sizes[index])
-        below = np.lib.stride_tricks.sliding_window_view(filled, wide).max(axis=1)
-        x = int(np.argmin(below))
-        spots[index] = x + _GAP, int(below[x]) + _GAP
-        filled[x : x + wide] = below[x] + high
-    return spots, max(64, -(-int(filled.max()) // 64) * 64)
 
 
 def font_file(bold: bool = False) -> Path:
@@ -142,55 +161,40 @@ def font_folders() -> list[Path]:
     ]
 
 
-def _drawn(writing: Writing, blank: bool):
+def _drawn(writing: Writing, blank: bool) -> Image:
     from PIL import Image, ImageDraw
 
-    ground = {"label": _PAPER, "plaque": _GROUND, "board": _GROUND}.get(writing.kind, _SCROLL)
+    ground = {"label": _PAPER, "plaque": _GROUND, "board": _GROUND}.get(writing.kind, PAPER)
     picture = Image.new("RGB", writing.size, ground)
     draw = ImageDraw.Draw(picture)
-    if writing.picture is not None:
-        _scroll(picture, draw, writing.picture)
+    if writing.kind == "picture":
+        hung_picture(picture, draw, writing.picture)
     else:
+        one_line = replace(writing, zh=" ".join(writing.zh.split()), en=" ".join(writing.en.split()))
         {"label": _label, "plaque": _board, "board": _board, "banner": _banner}[writing.kind](
-            draw, writing, blank
+            draw, one_line, blank
         )
     return picture
 
 
-def _scroll(sheet: Image, draw: ImageDraw, file: Path) -> None:
-    """A picture as it is mounted to hang: on paper, in a frame of silk that is widest above. One that cannot be read
-    leaves the paper empty; `hall check` names it."""
-    from PIL import Image, ImageOps
-
-    wide, high = sheet.size
-    side, above, below = round(0.07 * wide), round(0.12 * high), round(0.08 * high)
-    _mount(draw, sheet.size, side, above, below)
-    room = (wide - 2 * side, high - above - below)
-    try:
-        with Image.open(file) as held:
-            shown = ImageOps.contain(in_eight_bits(held).convert("RGB"), room, Image.Resampling.LANCZOS)
-    except Exception:  # a reader of foreign files may fail in any way
-        return
-    sheet.paste(shown, (side + (room[0] - shown.width) // 2, above + (room[1] - shown.height) // 2))
-
-
-def _mount(draw: ImageDraw, size: tuple[int, int], side: int, above: int, below: int) -> None:
-    """The frame of silk round the paper of a scroll, as wide as told [pixels]."""
-    wide, high = size
-    for frame in (
-        (0, 0, wide, above),
-        (0, high - below, wide, high),
-        (0, 0, side, high),
-        (wide - side, 0, wide, high),
-    ):
-        draw.rectangle(frame, fill=_SILK)
-
-
 def _fitted(draw: ImageDraw, text: str, size: int, width: float, bold: bool) -> FreeTypeFont:
-    """The font of at most `size` pixels in which `text` is no wider than `width`."""
-    while size > 12 and draw.textlength(text, font=_font(size, bold)) > width:
+    """The font of at most `size` pixels in which `text` is no wider than `width`; letters end where they are as small
+    as can be read."""
+    size = max(1, size)
+    while size > LEAST and draw.textlength(text, font=_font(size, bold)) > width:
         size -= 1
     return _font(size, bold)
+
+
+def letter_size(writing: Writing) -> int:
+    """How high the Chinese letters of a plaque, board or banner are at most, in the unit of its size, 1 or more."""
+    (wide, high), letters = writing.size, max(1, len(writing.zh))
+    if writing.kind == "banner":
+        long, short = max(wide, high), min(wide, high)
+        most, each = 0.62 * short, 0.86 * (1 - _NOT_WRITTEN * _RODS) * long / letters
+    else:
+        most, each = (0.52 if writing.en else 0.62) * high, 0.8 * wide / letters
+    return max(1, min(round(most), round(each)))
 
 
 def _label(draw: ImageDraw, writing: Writing, blank: bool) -> None:
@@ -207,14 +211,15 @@ def _label(draw: ImageDraw, writing: Writing, blank: bool) -> None:
 
 def _board(draw: ImageDraw, writing: Writing, blank: bool) -> None:
     wide, high = writing.size
+    side = min(wide, high)
     for inset, thick in ((0.035, 0.020), (0.075, 0.006)):
-        at = inset * high
-        draw.rectangle((at, at, wide - at, high - at), outline=_GOLD, width=max(1, round(thick * high)))
+        at = inset * side
+        draw.rectangle((at, at, wide - at, high - at), outline=_GOLD, width=max(1, round(thick * side)))
     if blank:
         return
     letters = len(writing.zh)
     middle = 0.42 if writing.en else 0.5
-    size = min(round((0.52 if writing.en else 0.62) * high), round(0.8 * wide / max(letters, 1)))
+    size = letter_size(writing)
     font = _fitted(draw, writing.zh, size, 0.86 * wide, True)
     gap = min(0.5 * size, (0.86 * wide - letters * size) / max(letters, 1))
     start = wide / 2 - (letters * size + (letters - 1) * gap) / 2 + size / 2
@@ -226,18 +231,17 @@ def _board(draw: ImageDraw, writing: Writing, blank: bool) -> None:
 
 
 def _banner(draw: ImageDraw, writing: Writing, blank: bool) -> None:
-    wide, high = writing.size
-    mount = round(0.10 * high)
-    _mount(draw, writing.size, round(0.05 * wide), mount, mount)
+    """Letters down a scroll, or along one that is wider than high, and a seal after the last."""
+    (wide, high), along = writing.size, int(writing.size[1] >= writing.size[0])
+    long, short = max(writing.size), min(writing.size)
+    rods, sides = round(_RODS * long), round(0.05 * short)
+    mount(draw, writing.size, *((sides, rods, rods) if along else (rods, sides, sides)))
     if blank:
         return
-    letters = len(writing.zh)
-    room = high - 3.5 * mount
-    size = min(round(0.62 * wide), round(0.86 * room / max(letters, 1)))
-    font = _font(size, True)
+    room, font = long - _NOT_WRITTEN * rods, _font(letter_size(writing), True)
     for k, letter in enumerate(writing.zh):
-        y = 1.3 * mount + room * (k + 0.5) / letters
-        draw.text((wide / 2, y), letter, _INK, font, anchor="mm")
-    seal = 0.17 * wide
-    at = (0.5 * wide, high - 1.65 * mount)
-    draw.rectangle((at[0] - seal / 2, at[1] - seal / 2, at[0] + seal / 2, at[1] + seal / 2), fill=_SEAL)
+        at = 1.3 * rods + room * (k + 0.5) / len(writing.zh)
+        draw.text((wide / 2, at) if along else (at, high / 2), letter, _INK, font, anchor="mm")
+    seal, end = 0.17 * short, long - 1.65 * rods
+    x, y = (wide / 2, end) if along else (end, high / 2)
+    draw.rectangle((x - seal / 2, y - seal / 2, x + seal / 2, y + seal / 2), fill=_SEAL)
