@@ -2,7 +2,7 @@
 
 encoding, film: pictures to films; look: what they and the models show of an outfit; trails: how what is worn beneath
 moved; motion: the clip of an outfit that moves; points: what is
-tracked of its wearer; outfit: one bake from inputs to record; command: `hall build`.
+tracked of its wearer; outfit: one bake from inputs to record; beside: several at once; command: `hall build`.
 Names are handed out when they are asked for (PEP 562).
 """
 
@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from hall_app.build.beside import Job, bake_beside
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
     from hall_app.build.film import Look, Part, Piece, filming
     from hall_app.build.look import Wardrobe
@@ -20,12 +21,14 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SOUND_RATE",
+    "Job",
     "Look",
     "Part",
     "Piece",
     "TrailLostError",
     "Trails",
     "Wardrobe",
+    "bake_beside",
     "bake_outfit",
     "budget",
     "encode_film",
@@ -40,6 +43,7 @@ __all__ = [
 ]
 
 _HOME = {
+    "Job": "beside",
     "Look": "film",
     "Part": "film",
     "Piece": "film",
@@ -47,6 +51,7 @@ _HOME = {
     "TrailLostError": "trails",
     "Trails": "trails",
     "Wardrobe": "look",
+    "bake_beside": "beside",
     "bake_outfit": "outfit",
     "budget": "outfit",
     "encode_film": "encoding",

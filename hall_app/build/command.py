@@ -8,31 +8,30 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from hall_app.content.bakes.store import (
-    SCAN,
-    bake_fault,
-    bake_folder,
-    bake_work,
-    baked_here,
-    data_bake,
-    read_record,
-)
+from hall_app.build.beside import Job, bake, bake_beside, cores
+from hall_app.content.bakes.store import SCAN, bake_fault, baked_here, data_bake, read_record
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.loading import load, read_table
 from hall_app.content.lookup import content_folder, make_data_folder
 from hall_app.content.schema.exhibit import ExhibitFile
+from sim_core.validation.arguments import whole
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bars
 
 __all__ = ["add_parser", "run"]
 
+TYPICAL = 600.0  # [s] a bake takes of which nothing is known yet
 Progress = Callable[[float, str], None]
 
 _EPILOG = """\
 Each outfit (exhibit.toml: outfit = "outfits/….toml") is baked into baked/ beside the exhibit: the simulated garments,
 both models, film and pictures. Each scan (exhibit.toml: scan = "….glb") becomes both models, whose deviation is
 measured. The room is raised from plan.toml and its light computed, into room/. What is up to date is left alone; where
-only [show] changed, the garment is not dressed again. An interrupted build goes on where it stopped. Without
-PyAV films are left out.
+only [show] changed, the garment is not dressed again. Several are baked at once, one a core; where one cannot be
+baked, the others are all the same. An interrupted build goes on where it stopped. Without PyAV films are left out.
 
 examples:
   hall build                      everything that changed, in ./assets
@@ -68,14 +67,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="write to --data instead of the content folder (as hall serve does)",
     )
+    parser.add_argument(
+        "--workers",
+        type=whole(1, 64),
+        default=cores(),
+        metavar="N",
+        help="exhibits baked at once, each by a process of some 700 MB (default: the cores, at most 4)",
+    )
     parser.add_argument("--json", action="store_true", help="progress and summary as JSON lines")
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Bake; 1 when an exhibit that was asked for cannot be baked."""
-    from hall_app.content.bakes.key import bake_key
-
     folder = content_folder(arguments.content)
     if arguments.media:
         from hall_app.media import make_media
@@ -86,7 +90,26 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.pattern:
         _draw_patterns(content, arguments)
         return 0
-    for exhibit in () if arguments.room else _chosen(content, arguments.exhibit):
+    jobs = [] if arguments.room else _jobs(content, arguments)
+    failed = 0
+    if len(jobs) == 1 or arguments.workers == 1:
+        for job in jobs:
+            with _progress(arguments.json, job.exhibit) as progress:
+                record = bake(job, content, progress)
+            _tell_baked(arguments.json, job.exhibit, record)
+    elif jobs:
+        failed = _beside(jobs, arguments)
+    if arguments.exhibit is None:
+        _build_room(content, arguments)
+    return 1 if failed else 0
+
+
+def _jobs(content: Content, arguments: argparse.Namespace) -> list[Job]:
+    """What is to be baked; of the others it is told that they are up to date."""
+    from hall_app.content.bakes.key import bake_key
+
+    jobs = []
+    for exhibit in _chosen(content, arguments.exhibit):
         key = bake_key(content, exhibit)
         target = data_bake(arguments.data, exhibit.id, key) if arguments.into_data else baked_here(exhibit)
         record = read_record(target)
@@ -94,20 +117,38 @@ def run(arguments: argparse.Namespace) -> int:
         if whole and not arguments.force:
             _tell(arguments.json, {"exhibit": exhibit.id, "state": "up to date"}, f"{exhibit.id}: up to date")
             continue
-        summary = _bake(content, exhibit, key, target, arguments)
-        _tell(
-            arguments.json,
-            {"exhibit": exhibit.id, "state": "baked", **summary},
-            "\n".join(
-                [
-                    f"{exhibit.id}: baked in {summary['seconds']['all']:.0f} s",
-                    *_scan_lines(exhibit.id, summary),
-                ]
-            ),
+        seconds = float((record or {}).get("seconds", {}).get("all", TYPICAL))
+        jobs.append(
+            Job(
+                content.folder,
+                exhibit.id,
+                key,
+                target,
+                arguments.data,
+                seconds,
+                film=not arguments.no_film,
+                force=arguments.force,
+            )
         )
-    if arguments.exhibit is None:
-        _build_room(content, arguments)
-    return 0
+    return jobs
+
+
+def _beside(jobs: list[Job], arguments: argparse.Namespace) -> int:
+    """Bakes several at once; of one that cannot be baked it is told why, and the others go on. How many could not."""
+    failed = 0
+    with _progress_of_all(arguments.json, jobs) as heard:
+        for exhibit, found in bake_beside(jobs, arguments.workers, heard):
+            if isinstance(found, str):
+                failed += 1
+                print(f"hall build: {exhibit}: {found}", file=sys.stderr, flush=True)
+            else:
+                _tell_baked(arguments.json, exhibit, found)
+    return failed
+
+
+def _tell_baked(as_json: bool, exhibit: str, record: dict) -> None:
+    lines = [f"{exhibit}: baked in {record['seconds']['all']:.0f} s", *_scan_lines(exhibit, record)]
+    _tell(as_json, {"exhibit": exhibit, "state": "baked", **record}, "\n".join(lines))
 
 
 def _scan_lines(exhibit: str, record: dict) -> list[str]:
@@ -183,30 +224,6 @@ def _concerns(content: Content, file: str, wanted: str) -> bool:
     return table is not None and table.outfit == file
 
 
-def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
-    make_data_folder(arguments.data)
-    work = bake_work(arguments.data, exhibit.id, key)
-    if exhibit.file.scan is not None:
-        from hall_app.build.scan import bake_scan
-
-        with _progress(arguments.json, exhibit.id) as progress:
-            return bake_scan(content, exhibit, key=key, target=target, work=work, progress=progress)
-    from hall_app.build.outfit import bake_outfit
-
-    former = None if arguments.force else bake_folder(content, exhibit, arguments.data)
-    with _progress(arguments.json, exhibit.id) as progress:
-        return bake_outfit(
-            content,
-            exhibit,
-            key=key,
-            target=target,
-            work=work,
-            progress=progress,
-            film=not arguments.no_film,
-            former=former,
-        )
-
-
 @contextmanager
 def _progress(as_json: bool, what: str) -> Iterator[Progress]:
     if as_json:
@@ -214,10 +231,42 @@ def _progress(as_json: bool, what: str) -> Iterator[Progress]:
             json.dumps({"fraction": round(fraction, 4), "label": label}), flush=True
         )
         return
+    with _bars() as bars:
+        task = bars.add_task("…", total=1.0, what=what)
+        yield lambda fraction, label: bars.update(task, completed=fraction, description=label)
+
+
+@contextmanager
+def _progress_of_all(as_json: bool, jobs: list[Job]) -> Iterator[Callable[[str, float, str], None]]:
+    """A bar for each exhibit under way, and one for all of them, by the time that each may take."""
+    if as_json:
+        yield lambda exhibit, fraction, label: print(
+            json.dumps({"exhibit": exhibit, "fraction": round(fraction, 4), "label": label}), flush=True
+        )
+        return
+    weights = {job.exhibit: max(job.seconds, 1.0) for job in jobs}
+    done = dict.fromkeys(weights, 0.0)
+    with _bars() as bars:
+        whole = bars.add_task(f"0 of {len(jobs)}", total=sum(weights.values()), what="all")
+        tasks: dict[str, Any] = {}
+
+        def heard(exhibit: str, fraction: float, label: str) -> None:
+            if exhibit not in tasks:
+                tasks[exhibit] = bars.add_task("…", total=1.0, what=exhibit)
+            done[exhibit] = fraction
+            bars.update(tasks[exhibit], completed=fraction, description=label)
+            ready = sum(share >= 1.0 for share in done.values())
+            gone = sum(weights[name] * share for name, share in done.items())
+            bars.update(whole, completed=gone, description=f"{ready} of {len(jobs)}")
+
+        yield heard
+
+
+def _bars() -> Bars:
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 
-    columns = (
+    return Bars(
         TextColumn("{task.fields[what]}"),
         BarColumn(),
         TextColumn("{task.description}"),
@@ -225,9 +274,6 @@ def _progress(as_json: bool, what: str) -> Iterator[Progress]:
         TextColumn("left"),
         TimeRemainingColumn(),
     )
-    with Bars(*columns) as bars:
-        task = bars.add_task("…", total=1.0, what=what)
-        yield lambda fraction, label: bars.update(task, completed=fraction, description=label)
 
 
 def _tell(as_json: bool, summary: dict, sentence: str) -> None:

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from hall_app.build.encoding import encode_film
 
-__all__ = ["SIZE", "Film", "Look", "Part", "Piece", "filming", "stills"]
+__all__ = ["SIZE", "STUDIO", "Film", "Look", "Part", "Piece", "filming", "stills"]
 
+STUDIO = 2  # raise it where pictures look different: those of garments that are kept are then taken anew
 SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
 ROUND = 75  # pictures of the walk round the finished garment

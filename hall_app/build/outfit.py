@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hall_app.build.encoding import film_possible
-from hall_app.build.film import Film, filming, stills
+from hall_app.build.film import STUDIO, Film, filming, stills
 from hall_app.build.look import Wardrobe
 from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
@@ -22,7 +22,6 @@ from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
 from hall_app.content.bakes.steps import Step, beneath_budget, budget, chosen_steps, hall_budget, study_of
 from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
-from hall_app.content.files import CLIP, TRACKED
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import read_glb
 
@@ -34,6 +33,7 @@ __all__ = ["bake_outfit", "budget", "refuse_disorder"]
 Progress = Callable[[float, str], None]
 
 FILM = ("drape.webm", "drape.mp4")
+PICTURES = ".jpg"
 KEPT = 2.0**-23  # [m] to which a garment is kept; at eight times that stiff cloth measures .3 % otherwise
 
 
@@ -72,8 +72,7 @@ def bake_outfit(
         *beneath, outermost_file = layer_files(len(garments))
         for garment, name in zip(garments, beneath, strict=False):
             garment.save(out / name, beside=(outermost_file, garments[-1]))  # both lie on the figure
-        if not (out / outermost_file).exists():  # one that was kept is the file it was, to the byte
-            garments[-1].save(out / outermost_file)
+        garments[-1].save(out / outermost_file)
         played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
         outermost = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
         levels.extend(wardrobe.write_models(garments, out, (beneath_budget(show), outermost), played))
@@ -94,14 +93,21 @@ def bake_outfit(
         garments, seconds = _dress(wardrobe, work, out, progress, models, film=film)
         seconds["all"] = round(time.perf_counter() - began, 2)
     else:
-        garments, seconds = kept
+        garments, seconds, pictured = kept
         progress(0.6, "models")
         clock = time.perf_counter()
         models(garments)
+        if not pictured:
+            progress(0.95, "pictures")
+            stills(wardrobe.still(garments), out)
         took = time.perf_counter() - clock
         seconds["all"] = round(seconds["all"] + took - seconds["models"], 2)
         seconds["models"] = round(took, 2)
-    record: dict[str, Any] = {**_record(key, garments, levels, seconds), "dressing": dressing}
+    record: dict[str, Any] = {
+        **_record(key, garments, levels, seconds),
+        "dressing": dressing,
+        "studio": STUDIO,
+    }
     if steps:
         study = study_of(content, exhibit)
         record["steps"] = [step.model_dump() for step in steps]
@@ -133,8 +139,9 @@ def _stepped(outfit: Outfit, steps: Sequence[Step]) -> Outfit:
 
 def _kept(
     former: Path, dressing: str, layers: int, out: Path, *, film: bool
-) -> tuple[tuple[Garment, ...], dict[str, float]] | None:
-    """Garments and seconds of an earlier bake, its film and pictures copied to `out`; None where it will not do."""
+) -> tuple[tuple[Garment, ...], dict[str, float], bool] | None:
+    """Garments and seconds of an earlier bake, whose film is copied to `out`, and whether its pictures are, too: where
+    they were taken in this studio. None where it will not do."""
     from sim_core.garment import Garment
 
     record = read_record(former)
@@ -142,10 +149,13 @@ def _kept(
         return None
     if film and FILM[0] not in record[FILES]:
         return None
+    pictured = record.get("studio") == STUDIO
+    as_it_was = (*FILM, PICTURES) if pictured else FILM
     for name in record[FILES]:
-        if not name.endswith((".glb", CLIP, TRACKED)):  # models, and how they move, are made anew
+        if name.endswith(as_it_was):  # models, and how they move, are made anew
             shutil.copyfile(former / name, out / name)
-    return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
+    garments = tuple(Garment.load(file).on_grid(KEPT) for file in map(former.joinpath, layer_files(layers)))
+    return garments, dict(record["seconds"]), pictured
 
 
 def _dress(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -107,7 +107,7 @@ def _misplaced(
 def _inside(sign: Sign, walls: Sequence[tuple[BaseGeometry, float]]) -> tuple[str, str, str] | None:
     import shapely
 
-    drawn = shapely.points(_across(sign) + OUT[sign.kind] * _front(sign))
+    drawn: Any = shapely.points(_across(sign) + OUT[sign.kind] * _front(sign))
     for shape, high in walls:
         if high <= _heights(sign)[0]:
             continue
