@@ -106,6 +106,7 @@ class GlbFile:
     meshes: list[dict[str, Any]] = field(default_factory=list)
     animations: list[dict[str, Any]] = field(default_factory=list)
     copies: list[dict[str, Any]] = field(default_factory=list)
+    told: dict[int, dict[str, Any]] = field(default_factory=dict)  # of a mesh's node
 
     def _view(self, data: bytes, target: int | None = None) -> int:
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
@@ -206,6 +207,15 @@ class GlbFile:
         """Adds a node with a mesh that is there already, shifted (3,) [m]."""
         self.copies.append({"name": name, "mesh": mesh, "translation": [float(x) for x in shift]})
 
+    def levels(self, near: range, far: range, distance: float) -> None:
+        """Makes these meshes two levels of one model, of which the far one is to be seen beyond a distance [m].
+
+        glTF has no word for that. Nodes tell it by `extras`, {"until": distance} and {"from": distance}, and far ones
+        have no size, so that whoever does not read it shows the near level alone.
+        """
+        self.told |= {mesh: {"extras": {"until": distance}} for mesh in near}
+        self.told |= {mesh: {"extras": {"from": distance}, "scale": [0.0, 0.0, 0.0]} for mesh in far}
+
     def move(self, mesh: int, ways: np.ndarray) -> None:
         """Gives a mesh morph targets: ways (K, V, 3) [m] of its vertices."""
         targets = [{"POSITION": self._accessor(way.astype("<f4"), "VEC3", FLOAT, VERTICES)} for way in ways]
@@ -227,7 +237,10 @@ class GlbFile:
     def bytes(self, name: str, extensions: list[str], generator: str = "sim_core.garment") -> bytes:
         """The finished file; `name` is the scene's, `extensions` are those its materials use."""
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
-        nodes = [{"name": mesh["name"], "mesh": k} for k, mesh in enumerate(self.meshes)] + self.copies
+        own = [
+            {"name": mesh["name"], "mesh": k, **self.told.get(k, {})} for k, mesh in enumerate(self.meshes)
+        ]
+        nodes = own + self.copies
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": generator},
             "scene": 0,

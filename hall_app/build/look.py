@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Wardrobe"]
 
-HALL_FIGURE = 1600  # triangles of a figure in the hall
+FIGURE = {"close": None, "hall": 1600, "afar": 400}  # triangles of a figure, None: all
+AFAR = 3.0  # times the nearest view: from there on a coarser level is seen, which may deviate as much more
 THINNEST = 0.3  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
 MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to the next
 TREAD = 0.06  # [m] above the ground that feet are looked at
@@ -92,40 +93,37 @@ class Wardrobe:
         garments: Sequence[Garment],
         folder: Path,
         budgets: tuple[float, float],
+        nearest: float,
         played: Played | None = None,
-    ) -> tuple[Garment, ...]:
-        """Writes close.glb, and hall.glb with each layer's cheapest level; returns these levels.
+    ) -> tuple[tuple[Garment, ...], tuple[Garment, ...]]:
+        """Writes close.glb, and hall.glb with each layer's cheapest level and the one for far eyes; returns these.
 
-        budgets [m]: how far (p99) what is worn beneath may deviate in the hall, and how far the outermost; played: how
-        they move, which shows more of their wearer, and bends what hangs flat.
+        budgets [m]: how far (p99) what is worn beneath may deviate in the hall, seen from `nearest` [m], and how far
+        the outermost; played: how they move, which shows more of their wearer, and bends what hangs flat. What moves
+        has no level for far eyes.
         """
-        from sim_core.garment import choose_detail
+        from sim_core.garment.glb import Afar, write_glb
 
-        self._write(garments, folder / "close.glb", "close", (garments, played))
-        moved = [() if played is None else tuple(played.frames[k]) for k in range(len(garments))]
-        levels = [choose_detail(one, budgets[0], moments=moved[k]) for k, one in enumerate(garments[:-1])]
-        levels.append(
-            choose_detail(garments[-1], budgets[1], solid=_worn(garments[-1], levels), moments=moved[-1])
-        )
-        self._write(levels, folder / "hall.glb", "hall", (garments, played))
-        return tuple(levels)
-
-    def _write(
-        self,
-        garments: Sequence[Garment],
-        path: Path,
-        precision: Literal["close", "hall"],
-        moved: tuple[Sequence[Garment], Played | None],
-    ) -> None:
-        """moved: the simulated garments, and how they move."""
-        from sim_core.garment import Clothed, write_glb
-
-        layers = [Clothed(garment, *maps) for garment, maps in zip(garments, self.maps, strict=True)]
-        simulated, played = moved
-        over = layers
+        dressed = self._clothed(garments)
+        close = self._figure(dressed, "close", played)
+        write_glb(folder / "close.glb", dressed, precision="close", figure=close)
+        levels = _levels(garments, budgets, played)
+        near = self._clothed(levels)
+        over = near if played is None else dressed
+        figure = self._figure(over, "hall", played)
         if played is not None:
-            over = [Clothed(garment, *maps) for garment, maps in zip(simulated, self.maps, strict=True)]
-        write_glb(path, layers, precision=precision, figure=self._figure(over, precision, played))
+            write_glb(folder / "hall.glb", near, precision="hall", figure=figure)
+            return levels, ()
+        coarse = _levels(garments, (AFAR * budgets[0], AFAR * budgets[1]), None)
+        far = self._clothed(coarse)
+        afar = Afar(far, self._figure(far, "afar", None), AFAR * nearest)
+        write_glb(folder / "hall.glb", near, precision="hall", figure=figure, afar=afar)
+        return levels, coarse
+
+    def _clothed(self, garments: Sequence[Garment]) -> list[Clothed]:
+        from sim_core.garment import Clothed
+
+        return [Clothed(garment, *maps) for garment, maps in zip(garments, self.maps, strict=True)]
 
     def _figure(self, layers: Sequence[Clothed], precision: str, played: Played | None) -> Any:
         """The wearer as far as no dense cloth hides it, as they stand and as they move."""
@@ -135,10 +133,11 @@ class Wardrobe:
         wearer = self.outfit.wearer
         if wearer is None:
             return None
-        most = HALL_FIGURE if precision == "hall" else None
         body = wearer.posed(self.outfit.pose), wearer.faces
         moments = [] if played is None else _moments(played, wearer)
-        shown = shown_figure(*body, *opaque(layers), triangles=most, moments=moments, worn=wearer.worn())
+        shown = shown_figure(
+            *body, *opaque(layers), triangles=FIGURE[precision], moments=moments, worn=wearer.worn()
+        )
         reach = max((_reach(figure) for figure, _ in moments), default=0.0)
         radius, height = shown.base
         return replace(shown, base=(max(radius, reach + ROUND), height))
@@ -194,6 +193,18 @@ class Wardrobe:
         base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
         raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
         return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)
+
+
+def _levels(
+    garments: Sequence[Garment], budgets: tuple[float, float], played: Played | None
+) -> tuple[Garment, ...]:
+    """Each layer's cheapest level; budgets [m]: of what is worn beneath, and of the outermost."""
+    from sim_core.garment import choose_detail
+
+    moved = [() if played is None else tuple(played.frames[k]) for k in range(len(garments))]
+    levels = [choose_detail(one, budgets[0], moments=moved[k]) for k, one in enumerate(garments[:-1])]
+    solid = _worn(garments[-1], levels)
+    return (*levels, choose_detail(garments[-1], budgets[1], solid=solid, moments=moved[-1]))
 
 
 def _moments(played: Played, wearer: Mannequin) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from hall_app.build.encoding import film_possible
 from hall_app.build.film import STUDIO, Film, filming, stills
-from hall_app.build.look import Wardrobe
+from hall_app.build.look import AFAR, Wardrobe
 from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.accessories import cloth_area, garment_at
@@ -66,6 +66,7 @@ def bake_outfit(
     wardrobe = Wardrobe(_stepped(load_outfit(content.folder / exhibit.file.outfit, content.folder), steps))
     show = exhibit.file.show
     levels: list[Garment] = []
+    coarse: list[Garment] = []
     moving: dict[str, float] = {}
 
     def models(garments: Sequence[Garment]) -> None:
@@ -75,7 +76,11 @@ def bake_outfit(
         garments[-1].save(out / outermost_file)
         played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
         outermost = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
-        levels.extend(wardrobe.write_models(garments, out, (beneath_budget(show), outermost), played))
+        near, far = wardrobe.write_models(
+            garments, out, (beneath_budget(show), outermost), show.nearest, played
+        )
+        levels.extend(near)
+        coarse.extend(far)
         if played is not None:
             told = write_motion(
                 wardrobe.outfit,
@@ -113,7 +118,10 @@ def bake_outfit(
         record["steps"] = [step.model_dump() for step in steps]
         record["study_fits"] = study is not None and study.inputs == study_inputs(wardrobe.outfit)
     record["errors"] |= moving
-    record["errors"]["hall_all_triangles"] = read_glb(out / "hall.glb").triangles
+    hall = read_glb(out / "hall.glb")
+    record["errors"]["hall_all_triangles"] = hall.triangles - hall.afar
+    if coarse:
+        record["afar"] = _afar(coarse, hall.afar, AFAR * show.nearest)
     record[FILES] = seal(out, RECORD)
     (out / RECORD).write_text(text_of(record), "utf-8")
     publish(out, target, RECORD)
@@ -292,6 +300,12 @@ def _record(
         "hall_budget_m": levels[-1].provenance["detail"].get("budget_m"),
         "versions": garments[-1].provenance["versions"],
     }
+
+
+def _afar(levels: Sequence[Garment], triangles: int, distance: float) -> dict[str, float]:
+    """Of the level seen beyond a distance [m]: triangles of all, and by how much its worst layer deviates [m]."""
+    apart = [level.provenance["detail"].get("hausdorff", {}).get("p99_m", 0.0) for level in levels]
+    return {"from_m": distance, "triangles": triangles, "hausdorff_p99_m": max(apart)}
 
 
 def _layer(garment: Garment) -> dict[str, Any]:

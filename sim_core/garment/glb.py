@@ -39,6 +39,7 @@ LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 2048  # a side, of the textures that every telephone has
+ROUND = {"close": (32, 48), "hall": (16, 28), "afar": (8, 14)}  # sides of a stand's bars and of a base
 SLUB_QUALITY, CELL_QUALITY, FIGURE_QUALITY = 85, 82, 88  # JPEG
 
 
@@ -91,6 +92,15 @@ class Clothed:
         return Clothed(garment, drawn(garment.weave), {name: drawn(w) for name, w in garment.weaves.items()})
 
 
+@dataclass(frozen=True)
+class Afar:
+    """How a model looks from afar: coarser garments from the skin outwards, the figure; distance [m] from which on."""
+
+    layers: Sequence[Clothed]
+    figure: Shown | None
+    distance: float
+
+
 def opaque(layers: Sequence[Clothed]) -> tuple[np.ndarray, np.ndarray]:
     """Positions (P, 3) [m] of all layers, and the faces (F, 3) that nothing is seen through."""
     points, faces, count = [], [], 0
@@ -104,9 +114,16 @@ def opaque(layers: Sequence[Clothed]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_glb(
-    path: Path, layers: Sequence[Clothed], *, precision: Precision = "close", figure: Shown | None = None
+    path: Path,
+    layers: Sequence[Clothed],
+    *,
+    precision: Precision = "close",
+    figure: Shown | None = None,
+    afar: Afar | None = None,
 ) -> int:
     """Writes garments, from the skin outwards, and their stand or figure; returns the size in bytes.
+
+    afar: a second level for far eyes, see `GlbFile.levels`; its nodes' names end with " afar".
 
     Panels of one look are one node: the garment's name, then its name and a number. Twins on a seam share place and
     normal, so that no seam shows but for its change of colour. A figure and what it wears stand on its base.
@@ -127,32 +144,51 @@ def write_glb(
                     f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
                 )
     textures: dict[int, dict[str, Any]] = {}
-    glb, lift = GlbFile(), np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
-    for layer in layers:
-        raised = replace(layer.garment, positions=layer.garment.positions + lift)
-        _write_panels(glb, replace(layer, garment=raised), precision, textures)
+    glb = GlbFile()
+    _write_level(glb, layers, figure, precision, textures)
+    if afar is not None:
+        near = len(glb.meshes)
+        _write_level(glb, afar.layers, afar.figure, "afar", textures)
+        for mesh in glb.meshes[near:]:
+            mesh["name"] += " afar"
+        glb.levels(range(near), range(near, len(glb.meshes)), afar.distance)
     outermost = layers[-1].garment
-    if outermost.settled is not None and outermost.settled.beneath.stand is not None:
-        vertices, faces = outermost.settled.beneath.stand.mesh(32 if precision == "close" else 16)
-        glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
-    if figure is not None:
-        bare = ~np.any([np.zeros(len(figure.faces), bool), *(part.faces for part in figure.worn)], axis=0)
-        looks = [("figure", bare, _plain("linen", LINEN, 0.9))]  # matt, light, without colour of its own
-        looks += [(part.name, part.faces, _plain(part.name, part.dye, 0.6)) for part in figure.worn]
-        for name, own, look in looks:
-            if own.any():
-                used, index = np.unique(figure.faces[own], return_inverse=True)
-                faces = index.reshape(-1, 3).astype(np.int32)
-                shading = figure.normals[used]
-                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(look), shading=shading)
-        base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
-        foot = solid_mesh(base, 48 if precision == "close" else 28)
-        glb.mesh("base", *foot, glb.material(_lacquer()))
     used = {name for material in glb.materials for name in material.get("extensions", ())}
     data = glb.bytes(outermost.name, sorted(used | {"KHR_texture_transform"}))
     with written_whole(Path(path)) as stream:
         stream.write(data)
     return len(data)
+
+
+def _write_level(
+    glb: GlbFile,
+    layers: Sequence[Clothed],
+    figure: Shown | None,
+    precision: Precision | Literal["afar"],
+    textures: dict[int, dict[str, Any]],
+) -> None:
+    """Garments and what bears them; of what is seen from afar cloth looks as in the hall."""
+    look: Precision = "close" if precision == "close" else "hall"
+    lift = np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
+    for layer in layers:
+        raised = replace(layer.garment, positions=layer.garment.positions + lift)
+        _write_panels(glb, replace(layer, garment=raised), look, textures)
+    outermost = layers[-1].garment
+    if outermost.settled is not None and outermost.settled.beneath.stand is not None:
+        stand = outermost.settled.beneath.stand.mesh(ROUND[precision][0])
+        glb.mesh("stand", *stand, glb.material(_lacquer()))
+    if figure is not None:
+        bare = ~np.any([np.zeros(len(figure.faces), bool), *(part.faces for part in figure.worn)], axis=0)
+        looks = [("figure", bare, _plain("linen", LINEN, 0.9))]  # matt, light, without colour of its own
+        looks += [(part.name, part.faces, _plain(part.name, part.dye, 0.6)) for part in figure.worn]
+        for name, own, material in looks:
+            if own.any():
+                used, index = np.unique(figure.faces[own], return_inverse=True)
+                faces = index.reshape(-1, 3).astype(np.int32)
+                shading = figure.normals[used]
+                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(material), shading=shading)
+        base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
+        glb.mesh("base", *solid_mesh(base, ROUND[precision][1]), glb.material(_lacquer()))
 
 
 def _write_panels(

@@ -22,8 +22,8 @@ Corner = tuple[float, float, float]
 class GlbInfo:
     """What a GLB holds.
 
-    size: bytes; triangles: as drawn; textures: (width, height) [pixels] of each image; low, high: lowest and
-    highest corner [m] of the whole model with its nodes' transforms.
+    size: bytes; triangles: as drawn; textures: (width, height) [pixels] of each image; low, high: lowest and highest
+    corner [m] of the whole model with its nodes' transforms; afar: triangles that are drawn for far eyes alone.
     """
 
     size: int
@@ -32,6 +32,7 @@ class GlbInfo:
     extensions: tuple[str, ...]
     low: Corner
     high: Corner
+    afar: int = 0
 
 
 def read_glb(path: Path) -> GlbInfo:
@@ -42,10 +43,10 @@ def read_glb(path: Path) -> GlbInfo:
         extensions = _plain_extensions(document)
         _no_outside_files(document)
         see_that_it_is_held(parts)
-        triangles = _triangles(document)
+        triangles, afar = _triangles(document)
         with np.errstate(all="ignore"):  # what is not finite is refused by name
             low, high = _bounds(document)
-        return GlbInfo(len(parts.data), triangles, _textures(parts), extensions, low, high)
+        return GlbInfo(len(parts.data), triangles, _textures(parts), extensions, low, high, afar)
     except GlbError:
         raise
     except (KeyError, IndexError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
@@ -81,13 +82,21 @@ def _no_outside_files(document: dict[str, Any]) -> None:
             raise GlbError(f"refers to another file {entry['uri']!r}", "export with everything embedded")
 
 
-def _triangles(document: dict[str, Any]) -> int:
-    """Triangles drawn, each mesh counted as often as nodes show it."""
+def _triangles(document: dict[str, Any]) -> tuple[int, int]:
+    """Triangles drawn, each mesh counted as often as nodes show it, and how many of them are drawn from afar alone."""
     per_mesh = [sum(_drawn(document, p) for p in mesh["primitives"]) for mesh in document.get("meshes", ())]
-    shown = [node["mesh"] for node in document.get("nodes", ()) if "mesh" in node]
+    shown = [node for node in document.get("nodes", ()) if "mesh" in node]
     if not shown or not sum(per_mesh):
         raise GlbError("holds no triangles", "export the model with its meshes")
-    return sum(per_mesh[mesh] for mesh in shown)
+    afar = [node for node in shown if is_afar(node)]
+    count, far = (sum(per_mesh[node["mesh"]] for node in nodes) for nodes in (shown, afar))
+    return count, far
+
+
+def is_afar(node: dict[str, Any]) -> bool:
+    """Whether a node is of the level that is seen from afar alone (`GlbFile.levels`)."""
+    extras = node.get("extras")
+    return isinstance(extras, dict) and "from" in extras
 
 
 def _drawn(document: dict[str, Any], primitive: dict[str, Any]) -> int:
@@ -112,7 +121,7 @@ def _bounds(document: dict[str, Any]) -> tuple[Corner, Corner]:
         met.add(index)
         matrix = above @ node_matrix(nodes[index])
         todo += [(child, matrix) for child in nodes[index].get("children", ())]
-        if "mesh" in nodes[index]:
+        if "mesh" in nodes[index] and not is_afar(nodes[index]):
             for primitive in document["meshes"][nodes[index]["mesh"]]["primitives"]:
                 accessor = document["accessors"][primitive["attributes"]["POSITION"]]
                 (x0, y0, z0), (x1, y1, z1) = accessor["min"], accessor["max"]

@@ -3,6 +3,7 @@
 import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/viser_adapter.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { aimLamp } from "./lamp.js";
+import { awayFrom, showLevel } from "./levels.js";
 import { layLight, plainTones, reflect, sharpen } from "./light.js";
 import { shadeBySight } from "./sides.js";
 import { gleam } from "./silk.js";
@@ -85,6 +86,7 @@ export function createQuality({ exhibits }, onChange = () => {}) {
         shadeBySight(meshes);
         gleam(meshes, blend);
         if (lit.has(name)) aimLamp(meshes, lit.get(name));
+        if (!CLOSE.includes(name)) showLevel(meshes, awayFrom(name));
       }
       drawAt(resolution(level(), window.devicePixelRatio));
     },

@@ -25,6 +25,7 @@ def exhibit_solids(content: Content, data: Path) -> list[tuple[NDArray[np.float6
         if models is None or not models.hall.is_file():
             continue
         mesh = trimesh.load_scene(models.hall, file_type="glb").to_mesh()
+        mesh.update_faces(mesh.area_faces > 0.0)  # what is seen from afar alone has no size here
         place = exhibit.file.place
         height = foot_height(content.plan, exhibit.file)
         frame = Frame.on_floor((place.x, place.z), place.facing, height)
