@@ -61,7 +61,9 @@ def test_build_is_whole_and_up_to_date(coarse_scarf):
     assert garment.digest() == first["digest"]
     assert [first["errors"][f"inside_{what}"] for what in ("vertices", "midpoints", "centroids")] == [0, 0, 0]
     hall, afar = read_glb(baked / "hall.glb"), first["afar"]
-    assert hall.afar == afar["triangles"] < first["errors"]["hall_all_triangles"] == hall.triangles - hall.afar
+    assert (
+        hall.afar == afar["triangles"] < first["errors"]["hall_all_triangles"] == hall.triangles - hall.afar
+    )
     assert afar["from_m"] == pytest.approx(3 * 1.3)  # as near as it is seen
     assert afar["hausdorff_p99_m"] <= 3 * first["hall_budget_m"]
     low, high = read_glb(baked / "close.glb").low, read_glb(baked / "close.glb").high
