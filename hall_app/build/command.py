@@ -92,11 +92,10 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     jobs = [] if arguments.room else _jobs(content, arguments)
     failed = 0
-    if len(jobs) == 1 or arguments.workers == 1:
-        for job in jobs:
-            with _progress(arguments.json, job.exhibit) as progress:
-                record = bake(job, content, progress)
-            _tell_baked(arguments.json, job.exhibit, record)
+    if len(jobs) == 1:
+        with _progress(arguments.json, jobs[0].exhibit) as progress:
+            record = bake(jobs[0], content, progress)
+        _tell_baked(arguments.json, jobs[0].exhibit, record)
     elif jobs:
         failed = _beside(jobs, arguments)
     if arguments.exhibit is None:
@@ -247,7 +246,7 @@ def _progress_of_all(as_json: bool, jobs: list[Job]) -> Iterator[Callable[[str, 
     weights = {job.exhibit: max(job.seconds, 1.0) for job in jobs}
     done = dict.fromkeys(weights, 0.0)
     with _bars() as bars:
-        whole = bars.add_task(f"0 of {len(jobs)}", total=sum(weights.values()), what="all")
+        every = bars.add_task(f"0 of {len(jobs)}", total=sum(weights.values()), what="all")
         tasks: dict[str, Any] = {}
 
         def heard(exhibit: str, fraction: float, label: str) -> None:
@@ -257,7 +256,7 @@ def _progress_of_all(as_json: bool, jobs: list[Job]) -> Iterator[Callable[[str, 
             bars.update(tasks[exhibit], completed=fraction, description=label)
             ready = sum(share >= 1.0 for share in done.values())
             gone = sum(weights[name] * share for name, share in done.items())
-            bars.update(whole, completed=gone, description=f"{ready} of {len(jobs)}")
+            bars.update(every, completed=gone, description=f"{ready} of {len(jobs)}")
 
         yield heard
 

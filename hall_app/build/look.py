@@ -109,14 +109,13 @@ class Wardrobe:
         write_glb(folder / "close.glb", dressed, precision="close", figure=close)
         levels = _levels(garments, budgets, played)
         near = self._clothed(levels)
-        over = near if played is None else dressed
-        figure = self._figure(over, "hall", played)
-        if played is not None:
-            write_glb(folder / "hall.glb", near, precision="hall", figure=figure)
-            return levels, ()
-        coarse = _levels(garments, (AFAR * budgets[0], AFAR * budgets[1]), None)
-        far = self._clothed(coarse)
-        afar = Afar(far, self._figure(far, "afar", None), AFAR * nearest)
+        figure = self._figure(near if played is None else dressed, "hall", played)
+        coarse: tuple[Garment, ...] = ()
+        afar = None
+        if played is None:
+            coarse = _levels(garments, (AFAR * budgets[0], AFAR * budgets[1]), None)
+            far = self._clothed(coarse)
+            afar = Afar(far, self._figure(far, "afar", None), AFAR * nearest)
         write_glb(folder / "hall.glb", near, precision="hall", figure=figure, afar=afar)
         return levels, coarse
 
