@@ -99,6 +99,7 @@ def bake_outfit(
         seconds["all"] = round(time.perf_counter() - began, 2)
     else:
         garments, seconds, pictured = kept
+        garments = _as_kept(wardrobe.outfit, garments)
         progress(0.6, "models")
         clock = time.perf_counter()
         models(garments)
@@ -162,7 +163,7 @@ def _kept(
     for name in record[FILES]:
         if name.endswith(as_it_was):  # models, and how they move, are made anew
             shutil.copyfile(former / name, out / name)
-    garments = tuple(Garment.load(file).on_grid(KEPT) for file in map(former.joinpath, layer_files(layers)))
+    garments = tuple(Garment.load(file) for file in map(former.joinpath, layer_files(layers)))
     return garments, dict(record["seconds"]), pictured
 
 
@@ -190,7 +191,7 @@ def _dress(
         )
         lap("drape")
         refuse_disorder(garments)
-        garments = tuple(garment.on_grid(KEPT) for garment in garments)
+        garments = _as_kept(wardrobe.outfit, garments)
         if taken is not None:
             taken.walk_round(_at_rest(wardrobe.outfit, garments))
             taken.stills(wardrobe.still(garments), out)
@@ -206,6 +207,17 @@ def _dress(
             progress(0.95, "pictures")
             stills(wardrobe.still(garments), out)
     return garments, seconds
+
+
+def _as_kept(outfit: Outfit, garments: Sequence[Garment]) -> tuple[Garment, ...]:
+    """The garments as files keep them, and what is measured of these: a record tells of what lies beside it."""
+    from sim_core.garment import measured
+
+    on_grid = [garment.on_grid(KEPT) for garment in garments]
+    return tuple(
+        garment.noted(errors={**garment.provenance["errors"], **measured(garment, layer)})
+        for garment, layer in zip(on_grid, outfit.layers, strict=True)
+    )
 
 
 def refuse_disorder(garments: Sequence[Garment]) -> None:

@@ -7,12 +7,13 @@ patterns; foreign: the mirror; encode: sound to files; make: all of it.
 from hall_app.media.cutting_plan import Plan, cutting_plan
 from hall_app.media.cutting_sheet import plan_picture, plan_svg
 from hall_app.media.drawings import View, weave_drawing
-from hall_app.media.foreign import FINENESS, RADIUS, back_height, mirror_glb
+from hall_app.media.foreign import ARCS, FINENESS, RADIUS, back_height, mirror_glb
 from hall_app.media.make import make_media, outfit_plan, write_pattern_sheet
 from hall_app.media.music import FALLING_GAUZE, HALL_PIECE, bar_notes, falling_gauze
 from hall_app.media.strings import RATE, Touch, pluck
 
 __all__ = [
+    "ARCS",
     "FALLING_GAUZE",
     "FINENESS",
     "HALL_PIECE",

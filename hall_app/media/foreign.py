@@ -27,15 +27,29 @@ LACQUER, RED, GOLD = "#2a1a18", "#8e2620", "#c49a52"  # sRGB
 
 @dataclass(frozen=True)
 class Fineness:
-    """rings x sectors of the mirror's two faces, sections of turned parts, points along their profiles."""
+    """back, face: radii of the rings of the mirror's two faces, of its own, ascending to 1; sectors of both; sections
+    of turned parts, points along their profiles, sides of a fillet."""
 
-    rings: int
+    back: tuple[float, ...]
+    face: tuple[float, ...]
     sectors: int
     sections: int
     smooth: int
+    sides: int
 
 
-FINENESS = {"hall": Fineness(26, 160, 32, 2), "close": Fineness(78, 300, 48, 3)}
+def _even(rings: int) -> tuple[float, ...]:
+    return tuple((np.arange(1, rings + 1) / rings).tolist())
+
+
+# Rings where the relief changes its slope: fewer than half as many as evenly spread ones, and closer to it.
+_EDGES = (0.06, 0.10, 0.12, 0.17, 0.22, 0.27, 0.30, 0.33, 0.35, 0.565, 0.60, 0.64, 0.69, 0.72, 0.755, 0.79)
+_EDGES += (0.81, 0.84, 1.0)
+
+FINENESS = {
+    "hall": Fineness(_EDGES, _even(2), 96, 28, 1, 5),
+    "close": Fineness(_even(78), _even(4), 300, 48, 3, 11),
+}
 
 
 def write_mirror(folder: Path) -> None:
@@ -110,8 +124,8 @@ def _mirror(fineness: Fineness) -> Any:
     """The disc with relief on its back, coloured by height; the back, which museums show, to +z."""
     import trimesh
 
-    rings, sectors = fineness.rings, fineness.sectors
-    front, back = _polar(max(4, rings // 24), sectors), _polar(rings, sectors)  # the face is plain
+    sectors = fineness.sectors
+    front, back = _polar(fineness.face, sectors), _polar(fineness.back, sectors)
     height = back_height(*back)
     face = 0.0030 - 0.0035 * (front[0] / RADIUS) ** 2  # slightly convex: it shows the whole head
     grids = [
@@ -136,10 +150,11 @@ def _mirror(fineness: Fineness) -> Any:
     return _dressed(mesh, "bronze", "#ffffff", metallic=0.35, rough=0.32, colour=colour)
 
 
-def _polar(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
-    """Radius [m] and angle [rad], each (rings, sectors), without the middle."""
-    radius, angle = RADIUS * np.arange(1, rings + 1) / rings, 2 * np.pi * np.arange(sectors) / sectors
-    return np.broadcast_to(radius[:, None], (rings, sectors)), np.broadcast_to(angle, (rings, sectors))
+def _polar(shares: tuple[float, ...], sectors: int) -> tuple[np.ndarray, np.ndarray]:
+    """Radius [m] and angle [rad], each (rings, sectors), without the middle; shares: of the mirror's radius."""
+    radius, angle = RADIUS * np.array(shares), 2 * np.pi * np.arange(sectors) / sectors
+    shape = len(radius), sectors
+    return np.broadcast_to(radius[:, None], shape), np.broadcast_to(angle, shape)
 
 
 def _tone(height: np.ndarray) -> np.ndarray:
@@ -236,7 +251,7 @@ def _ring(radius: float, height: float, thick: float, fineness: Fineness) -> Any
     import trimesh
 
     mesh = trimesh.creation.torus(
-        radius, thick, major_sections=fineness.sections, minor_sections=8 + fineness.smooth
+        radius, thick, major_sections=fineness.sections, minor_sections=fineness.sides
     )
     mesh.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, [1, 0, 0]))
     mesh.apply_translation([0, height, 0])

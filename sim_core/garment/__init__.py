@@ -2,7 +2,7 @@
 
 from sim_core.body import Stand
 from sim_core.garment.clip import Clip
-from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
+from sim_core.garment.dressing import Frame, check_fits, dress, layer_order, measured
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.glb import Clothed, opaque, write_glb
@@ -31,6 +31,7 @@ __all__ = [
     "layer_order",
     "load_motion",
     "load_outfit",
+    "measured",
     "move",
     "moving_errors",
     "opaque",

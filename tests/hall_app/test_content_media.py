@@ -13,6 +13,7 @@ from PIL import Image
 
 from hall_app.content.models import read_glb
 from hall_app.media import (
+    ARCS,
     FALLING_GAUZE,
     FINENESS,
     HALL_PIECE,
@@ -102,6 +103,21 @@ def test_mirror_is_shipped_as_made():
         info = read_glb(path)
         assert info.low[1] == pytest.approx(0.0, abs=1e-6)
         assert 0.5 < info.high[1] < 0.7
+
+
+def test_few_rings_follow_the_relief_better_than_many_even_ones():
+    radius, angle = np.linspace(0, RADIUS, 2000), np.linspace(0, 2 * np.pi / ARCS, 40)
+
+    def mean_error(shares) -> float:
+        rings = RADIUS * np.array([0.0, *shares])
+        found = [np.interp(radius, rings, back_height(rings, one)) for one in angle]
+        true = [back_height(radius, one) for one in angle]
+        return float((np.abs(np.subtract(found, true)) * radius).sum() / radius.sum() / len(angle))
+
+    shares = FINENESS["hall"].back
+    assert list(shares) == sorted(shares)
+    assert shares[-1] == 1.0
+    assert mean_error(shares) < mean_error(np.arange(1, 27) / 26)
 
 
 def test_back_of_the_mirror_has_sixteen_equal_arcs():

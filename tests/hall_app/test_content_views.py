@@ -140,6 +140,7 @@ def test_scene(house: Path):
     assert scene["outline"] == [[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0], [-5.0, 5.0]]
     assert [solid["kind"] for solid in scene["solids"]] == ["wall", "booth", "column"]
     assert scene["solids"][2]["round"] == [3.0, 0.0, 0.3]
+    assert len(scene["opaque"]) == 1
     assert scene["nodes"] == ["/exhibits/chest"]
     assert scene["music"] is None
     (entry,) = scene["exhibits"]

@@ -70,9 +70,10 @@ def lit(room, tmp_path_factory):
     return path
 
 
-def meshes(path: Path) -> dict[str, dict]:
+def meshes(path: Path) -> list[tuple[str, dict]]:
+    """Names, of which several meshes may have one, and what glTF calls primitives."""
     document = open_glb(path).document
-    return {mesh["name"]: {**mesh["primitives"][0], "document": document} for mesh in document["meshes"]}
+    return [(mesh["name"], {**mesh["primitives"][0], "document": document}) for mesh in document["meshes"]]
 
 
 @pytest.mark.parametrize("kind", ["flat", "lit"])
@@ -108,7 +109,7 @@ def test_large_walls_vary_by_a_hundredth():
 
 
 def test_without_light_every_mesh_is_shaded(flat):
-    for name, mesh in meshes(flat).items():
+    for name, mesh in meshes(flat):
         assert name.startswith("hall_")
         assert mesh["document"]["materials"][mesh["material"]]["name"] == name
         assert "KHR_materials_unlit" in mesh["document"]["materials"][mesh["material"]]["extensions"]
@@ -119,17 +120,38 @@ def test_without_light_every_mesh_is_shaded(flat):
 
 def test_with_light_every_mesh_but_lamps_has_its_second_coordinates(lit):
     found = meshes(lit)
-    bearer = found.pop("lightmap")
+    (bearer,) = [mesh for name, mesh in found if name == "lightmap"]
     material = bearer["document"]["materials"][bearer["material"]]
     assert material["name"] == "lightmap"
     assert "baseColorTexture" in material["pbrMetallicRoughness"]
-    for name, mesh in found.items():
+    for name, mesh in found:
+        if mesh is bearer:
+            continue
         glows = MATERIALS[name.removeprefix("hall_")].glow > 0
         assert ("TEXCOORD_1" in mesh["attributes"]) != glows
         assert "COLOR_0" not in mesh["attributes"]
         assert ("TEXCOORD_0" in mesh["attributes"]) == (
             MATERIALS[name.removeprefix("hall_")].texture is not None
         )
+
+
+def test_what_lies_beside_the_view_can_be_left_out(room, flat):
+    """From the middle of the hall, whichever way one looks, most of its triangles lie in meshes beside the view."""
+    parts = open_glb(flat)
+    boxes, counts = [], []
+    for _, mesh in meshes(flat):
+        place = parts.document["accessors"][mesh["attributes"]["POSITION"]]
+        boxes.append([place["min"], place["max"]])
+        counts.append(parts.document["accessors"][mesh["indices"]]["count"] // 3)
+    assert sum(counts) == room.triangles
+    low, high = np.array(boxes).transpose(1, 0, 2)
+    middle, reach = (low + high) / 2, np.linalg.norm(high - low, axis=1) / 2
+    half = np.radians(45)  # wider than any picture of the hall on a screen
+    for way in np.radians(np.arange(0, 360, 30)):
+        sides = np.array([way - half - np.pi / 2, way + half + np.pi / 2])
+        outward = np.stack([np.cos(sides), np.zeros(2), np.sin(sides)], axis=1)
+        drawn = ((middle - [0, 1.6, 0]) @ outward.T < reach[:, None]).all(axis=1)
+        assert 0.1 * room.triangles < np.array(counts)[drawn].sum() < 0.7 * room.triangles
 
 
 def test_stored_light_is_half_of_it(lit):

@@ -44,9 +44,9 @@ class Line:
 def garment_lines(content: Content) -> list[Line]:
     """The figures of every garment's bake beside its exhibit; a line without a value for each fault of its files."""
     lines = []
-    for problem in content.problems:  # an exhibit that cannot be read may hold a garment
-        exhibit = problem.file.split("/")[1] if problem.file.startswith("exhibits/") else problem.file
-        lines.append(Line(exhibit, "exhibit", None, str(problem), False))
+    for problem in content.problems:
+        if problem.file.startswith("exhibits/"):  # one that cannot be read may hold a garment
+            lines.append(Line(problem.file.split("/")[1], "exhibit", None, str(problem), False))
     for exhibit in content.exhibits:
         if exhibit.file.outfit is not None:
             lines += _of(content, exhibit)

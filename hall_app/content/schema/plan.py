@@ -154,3 +154,9 @@ class PlanFile(Table):
     lantern: tuple[Lantern, ...] = Field((), description="lanterns, one [[lantern]] each")
     curtain: tuple[Curtain, ...] = Field((), description="curtains, one [[curtain]] each")
     sign: tuple[Sign, ...] = Field((), description="plaque, banners and pictures, one [[sign]] each")
+
+    def height_over(self, bay: Bay) -> float:
+        """Height [m] of the ceiling over a bay: its own, else the nave's over the bay named nave, else the rooms'."""
+        if bay.height is not None:
+            return bay.height
+        return self.nave_height if bay.id == "nave" else self.height

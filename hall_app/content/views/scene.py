@@ -12,6 +12,7 @@ from urllib.parse import quote
 from hall_app.content.behaviours import kind_of
 from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there, tracked_beside
 from hall_app.content.floor.footprints import plan_footprints
+from hall_app.content.floor.opaque import opaque_walls
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.schema.exhibit import Media, Record
@@ -103,6 +104,7 @@ def scene_json(
         "eye": hall.eye.model_dump(),
         "outline": [list(point) for point in plan.outline],
         "solids": [footprint.as_json() for footprint in plan_footprints(plan)],
+        "opaque": [list(wall) for wall in opaque_walls(plan)],
         "bays": [
             {"id": bay.id, "name": bay.name.as_json(), "polygon": [list(point) for point in bay.polygon]}
             for bay in plan.bay

@@ -20,7 +20,8 @@ function toThree(point) {
   return turn ? rotate(turn, point) : point;
 }
 
-function fromThree(point) {
+/** A point of three.js' world in the hall's own metres. */
+export function inHall(point) {
   const turn = sceneTurn();
   if (!turn) return point;
   const [w, x, y, z] = turn;
@@ -116,7 +117,7 @@ export function fieldOfView() { return ((camera()?.fov ?? LENS) * Math.PI) / 180
 /** Where the picture is seen from now, in world metres: what a visitor really sees, used by tests. */
 export function displayed() {
   const eye = camera()?.position;
-  return eye ? fromThree([eye.x, eye.y, eye.z]) : null;
+  return eye ? inHall([eye.x, eye.y, eye.z]) : null;
 }
 
 /** Whether the picture is seen from above (x, z) [m], to a millimetre. */

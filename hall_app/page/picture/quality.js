@@ -1,6 +1,8 @@
 // Picture quality: resolution, sharpness of slanted textures, reflections. The visitor's choice, or the judge's.
 
+import { displayed } from "../look/camera.js";
 import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/viser_adapter.js";
+import { boxAbout, drawSeen, ownBox } from "./hidden.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { aimLamp } from "./lamp.js";
 import { awayFrom, showLevel } from "./levels.js";
@@ -36,7 +38,7 @@ function softwareDraws() {
 }
 
 /** createQuality(scene, onChange) -> {choice, level, choose, frame}; onChange() when choice or level is another. */
-export function createQuality({ exhibits }, onChange = () => {}) {
+export function createQuality({ exhibits, opaque }, onChange = () => {}) {
   const lit = new Map(exhibits.map((exhibit) => [`/exhibits/${exhibit.id}`, exhibit]));
   let choice = CHOICES.includes(recall(CHOSEN)) ? recall(CHOSEN) : "auto";
   const found = LEVELS.includes(recall(FOUND)) ? recall(FOUND) : null;
@@ -79,6 +81,8 @@ export function createQuality({ exhibits }, onChange = () => {}) {
       layLight(room);
       reflect(reflections);
       sharpen(room, anisotropy, blend);
+      const eye = opaque.length ? displayed() : null;
+      if (eye) drawSeen(room, opaque, eye, ownBox);
       for (const name of nodeNames()) {
         if (!name.startsWith("/exhibits/") && !CLOSE.includes(name)) continue;
         const meshes = meshesOf(name);
@@ -86,7 +90,9 @@ export function createQuality({ exhibits }, onChange = () => {}) {
         shadeBySight(meshes);
         gleam(meshes, blend);
         if (lit.has(name)) aimLamp(meshes, lit.get(name));
-        if (!CLOSE.includes(name)) showLevel(meshes, awayFrom(name));
+        if (CLOSE.includes(name)) continue;
+        showLevel(meshes, awayFrom(name));
+        if (eye) drawSeen(meshes, opaque, eye, boxAbout);
       }
       drawAt(resolution(level(), window.devicePixelRatio));
     },

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hall_app.content.files import file_problem
 from hall_app.room.patch import Frame, Patch, box, quad, strip, tube
 from hall_app.room.structure.frame import beams_of, columns_of
-from hall_app.room.structure.regions import Regions, bay_height
+from hall_app.room.structure.regions import Regions
 from hall_app.room.surface.lettering import SCROLLS, Sheet, Writing
 
 if TYPE_CHECKING:
@@ -121,11 +121,11 @@ def _over_the_door(bay: Bay, plan: PlanFile, regions: Regions) -> Board | None:
     import shapely
 
     here = shapely.Polygon(bay.polygon)
-    rank = (bay_height(bay, plan), here.area)
+    rank = (plan.height_over(bay), here.area)
     best, side = None, None
     for other in plan.bay:
         shape = shapely.Polygon(other.polygon)
-        if other.id == bay.id or (bay_height(other, plan), shape.area) <= rank:
+        if other.id == bay.id or (plan.height_over(other), shape.area) <= rank:
             continue
         for gap in _gaps(here, shape, plan):
             if gap.length > 1.2 and (best is None or gap.length > best.length):

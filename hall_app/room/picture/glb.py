@@ -1,7 +1,12 @@
-"""The room as one GLB: a mesh a material, drawn unlit, with tiling textures and, once baked, a light map."""
+"""The room as one GLB: meshes of one material each, drawn unlit, with tiling textures and, once baked, a light map.
+
+A renderer leaves out what lies beside or behind the view mesh by mesh, and a software renderer pays for every corner
+that it does not: so what reaches through all of the hall is cut into neighbourhoods.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
@@ -25,6 +30,8 @@ _TEXTURE_QUALITY, _SHEET_QUALITY = 87, 70
 _SHEET_BYTES, _LEAST_QUALITY = 186_000, 30  # photographs weigh more than letters do
 _SHADED_SHEET_QUALITY = 72  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
+# Triangles of a mesh: half of the room or less is drawn before an exhibit, by 20 to 60 calls.
+_NEIGHBOURS = 500
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
 
@@ -40,24 +47,39 @@ def room_glb(room: Room, light: LightMap | None = None) -> bytes:
         chosen = [k for k, patch in enumerate(room.patches) if patch.material == name]
         if not chosen:
             continue
-        patches = [room.patches[k] for k in chosen]
-        starts = np.cumsum([0, *(len(patch.vertices) for patch in patches)])
-        faces = np.concatenate([p.faces + s for p, s in zip(patches, starts, strict=False)])
-        uv = np.concatenate([_uv(room.patches[k], offsets[k]) for k in chosen])
+        material = _material(glb, name, room, [room.patches[k] for k in chosen], quality)
         lit = corners is not None and not MATERIALS[name].glow
-        glb.mesh(
-            f"hall_{name}",
-            np.concatenate([patch.vertices for patch in patches]),
-            faces,
-            _material(glb, name, room, patches, quality),
-            uv if MATERIALS[name].texture is not None else None,
-            colours=_shade(patches) if light is None and not MATERIALS[name].glow else None,
-            uv1=np.concatenate([corners[k] for k in chosen]) if corners is not None and lit else None,
-            shading=False,
-        )
+        for near in _neighbourhoods(room.patches, chosen):
+            patches = [room.patches[k] for k in near]
+            starts = np.cumsum([0, *(len(patch.vertices) for patch in patches)])
+            faces = np.concatenate([p.faces + s for p, s in zip(patches, starts, strict=False)])
+            uv = np.concatenate([_uv(room.patches[k], offsets[k]) for k in near])
+            glb.mesh(
+                f"hall_{name}",
+                np.concatenate([patch.vertices for patch in patches]),
+                faces,
+                material,
+                uv if MATERIALS[name].texture is not None else None,
+                colours=_shade(patches) if light is None and not MATERIALS[name].glow else None,
+                uv1=np.concatenate([corners[k] for k in near]) if corners is not None and lit else None,
+                shading=False,
+            )
     if light is not None:
         _add_light(glb, light)
     return glb.bytes("hall", [_UNLIT, _WEBP], "hall_app.room")
+
+
+def _neighbourhoods(patches: Sequence[Patch], chosen: Sequence[int]) -> list[list[int]]:
+    """The chosen patches' numbers in groups of at most _NEIGHBOURS triangles, halved across their longest side."""
+    counts = np.array([len(patches[k].faces) for k in chosen])
+    if counts.sum() <= _NEIGHBOURS or len(chosen) == 1:
+        return [list(chosen)]
+    middles = np.array([(patches[k].vertices.min(0) + patches[k].vertices.max(0)) / 2 for k in chosen])
+    order = np.argsort(middles[:, np.ptp(middles, axis=0).argmax()], kind="stable")
+    half = int(np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)) + 1
+    cut = min(half, len(chosen) - 1)
+    sides = order[:cut], order[cut:]
+    return [group for side in sides for group in _neighbourhoods(patches, [chosen[k] for k in side])]
 
 
 def _uv(patch: Patch, offset: Floats) -> Floats:

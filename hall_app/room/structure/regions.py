@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
-    from hall_app.content.schema import Bay, PlanFile
+    from hall_app.content.schema import PlanFile
 
-__all__ = ["Region", "Regions", "bay_height"]
+__all__ = ["Region", "Regions"]
 
 Floats = NDArray[np.float64]
 _HAIR = 1e-3  # [m]
@@ -24,13 +24,6 @@ class Region:
 
     shape: Any
     height: float
-
-
-def bay_height(bay: Bay, plan: PlanFile) -> float:
-    """Height [m] of the ceiling over a bay: its own, else the nave's over the bay named nave, else the rooms'."""
-    if bay.height is not None:
-        return bay.height
-    return plan.nave_height if bay.id == "nave" else plan.height
 
 
 @dataclass(frozen=True)
@@ -55,7 +48,7 @@ class Regions:
         for bay in self.plan.bay:
             part = shapely.Polygon(bay.polygon).intersection(left)
             if not part.is_empty and part.area > 1e-6:
-                by_height.setdefault(bay_height(bay, self.plan), []).append(part)
+                by_height.setdefault(self.plan.height_over(bay), []).append(part)
                 left = left.difference(part)
         if left.area > 1e-6:
             by_height.setdefault(self.plan.height, []).append(left)

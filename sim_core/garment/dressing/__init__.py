@@ -6,7 +6,7 @@ from sim_core.garment.dressing.fitting import check_fits
 from sim_core.garment.dressing.materials import materials_of, simplified
 from sim_core.garment.dressing.order import layer_order, overlap
 from sim_core.garment.dressing.places import belt_pairs
-from sim_core.garment.dressing.quality import seam_gap
+from sim_core.garment.dressing.quality import measured, seam_gap
 from sim_core.garment.dressing.records import forget
 from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
 from sim_core.garment.dressing.wearing import capped
@@ -22,6 +22,7 @@ __all__ = [
     "forget",
     "layer_order",
     "materials_of",
+    "measured",
     "overlap",
     "seam_gap",
     "sewn_sheet",
