@@ -16,7 +16,7 @@ from hall_app.light.model import LightMap, Surfaces
 
 __all__ = ["Shown", "light_jpeg", "show"]
 
-WALL = 0.64  # linear brightness pale walls come to
+WALL = 0.34  # linear brightness pale walls come to: silk is shown in little light, and is the brightest thing in view
 _WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in deep shade or never seen
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
 SHOULDER = 0.88  # linear brightness from which highlights are rolled off

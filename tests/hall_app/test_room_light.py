@@ -15,7 +15,7 @@ from hall_app.check import check
 from hall_app.content import load
 from hall_app.content.models import difference, open_glb
 from hall_app.content.schema import PlanFile
-from hall_app.light import SHOULDER, Sampling, bake_light
+from hall_app.light import SHOULDER, WALL, Sampling, bake_light
 from hall_app.room import raise_room
 from hall_app.room.bake import bake_room, room_here, room_key, shown_room
 from hall_app.room.lighting import exhibit_solids, spots_of, surfaces
@@ -87,7 +87,8 @@ def test_spots_hang_in_the_hall_and_shine_down_on_their_place(content):
         assert min(f.distance(aimed) for f in footprints) < 0.1
 
 
-TONE = 12.0  # ΔE76 between a backdrop as it is seen and its palette tone
+TONE = 12.0  # ΔE76 between a backdrop as it is seen, by an eye that is used to the walls' light, and its palette tone
+WALLS = WALL / linear(MATERIALS["plaster"].colour).mean()
 BOOTH = {
     "outline": [[-3, -3], [3, -3], [3, 3], [-3, 3]],
     "height": 4.3,
@@ -100,8 +101,8 @@ BOOTH = {
 
 
 def tone(colour: np.ndarray, material: str) -> float:
-    """ΔE76 of the mean of linear colours (N, 3), as they are seen, to the material's own."""
-    return difference(colour.mean(0), linear(MATERIALS[material].colour))
+    """ΔE76 of the mean of linear colours (N, 3), as they are seen among the walls, to the material's own."""
+    return difference(colour.mean(0) / WALLS, linear(MATERIALS[material].colour))
 
 
 def test_a_pale_backdrop_keeps_its_tone_under_its_spot(content):
@@ -124,8 +125,8 @@ def test_a_pale_backdrop_keeps_its_tone_under_its_spot(content):
     assert light.record["rolled_off"] < 0.05
 
 
-@pytest.mark.parametrize("backdrop", ["pale", "dark"])
-def test_shipped_backdrops_keep_their_tone(backdrop):
+def test_shipped_backdrops_keep_their_tone(content):
+    (backdrop,) = {solid.backdrop for solid in content.plan.solid} - {"none"}
     light, uv, faces = shipped_light(f"hall_{backdrop}")
     rng = np.random.default_rng(0)
     corners = uv[faces]

@@ -31,7 +31,7 @@ _SHEET_BYTES, _LEAST_QUALITY = 186_000, 30  # photographs weigh more than letter
 _SHADED_SHEET_QUALITY = 72  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Triangles of a mesh: half of the room or less is drawn before an exhibit, by 20 to 60 calls.
-_NEIGHBOURS = 500
+_NEIGHBOURS = 650
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
 

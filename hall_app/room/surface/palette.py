@@ -43,7 +43,7 @@ MATERIALS: dict[str, Material] = {
     "curtain": Material("#74302B", "cloth", (0.5, 0.5), 6.0),
     "gold": Material("#B8934A", None),
     "pale": Material("#CDD8D8", "cloth", (0.9, 0.9)),
-    "dark": Material("#36424A", "cloth", (0.9, 0.9)),
+    "dark": Material("#243C50", "cloth", (0.9, 0.9)),
     "signs": Material("#E8E0CC", "signs"),
     "paper": Material("#FFF8E6", "paper", (1.2, 1.2), 2.0, WINDOW, "#FFF7E6"),
     "laylight": Material("#FFFAEC", "paper", (1.2, 1.2), 2.0, LAYLIGHT, "#FFFCF5"),
