@@ -1,32 +1,13 @@
 // The camera behind a few small verbs.
 // World: y up, metres. three.js sees it through the orientation of viser's root node.
 
-import { allowDistance, camera, cameraControl, canvas, requestRender, sceneTurn } from "../viser/viser_adapter.js";
+import { allowDistance, camera, cameraControl, canvas, inThree, requestRender, seenFrom } from "../viser/viser_adapter.js";
 
 const ROTATE = 1, DOLLY = 16, TOUCH_ROTATE = 64, TOUCH_DOLLY = 1024;
 const LENS = 58; // [deg] vertical field of view: show/scene.py
 const NARROWEST = 40; // [deg] of width on an upright screen
 const WIDEST = 78; // [deg] of height there
 const PITCH_LIMIT = (75 * Math.PI) / 180;
-
-// v rotated by the unit quaternion (w, x, y, z).
-function rotate([w, x, y, z], [a, b, c]) {
-  const tx = 2 * (y * c - z * b), ty = 2 * (z * a - x * c), tz = 2 * (x * b - y * a);
-  return [a + w * tx + y * tz - z * ty, b + w * ty + z * tx - x * tz, c + w * tz + x * ty - y * tx];
-}
-
-function toThree(point) {
-  const turn = sceneTurn();
-  return turn ? rotate(turn, point) : point;
-}
-
-/** A point of three.js' world in the hall's own metres. */
-export function inHall(point) {
-  const turn = sceneTurn();
-  if (!turn) return point;
-  const [w, x, y, z] = turn;
-  return rotate([w, -x, -y, -z], point);
-}
 
 /** Direction of view for a heading and pitch; yaw 0 looks to -z, positive turns left. */
 export function direction(yaw, pitch) {
@@ -67,14 +48,14 @@ export function freeDistances() {
 export function look(eye, ahead) {
   const control = cameraControl();
   if (!control) return;
-  const from = toThree(eye), to = toThree([eye[0] + ahead[0], eye[1] + ahead[1], eye[2] + ahead[2]]);
+  const from = inThree(eye), to = inThree([eye[0] + ahead[0], eye[1] + ahead[1], eye[2] + ahead[2]]);
   control.setLookAt(...from, ...to, false);
 }
 
 /** Look at `target` from `eye`, both [m]. */
 export function lookAt(eye, target) {
   const control = cameraControl();
-  if (control) control.setLookAt(...toThree(eye), ...toThree(target), false);
+  if (control) control.setLookAt(...inThree(eye), ...inThree(target), false);
 }
 
 /** Look at a point of three.js' own world from the side the eye is on now, so many metres away; turning goes round it. */
@@ -115,10 +96,7 @@ export function fitLens(near = false) {
 export function fieldOfView() { return ((camera()?.fov ?? LENS) * Math.PI) / 180; }
 
 /** Where the picture is seen from now, in world metres: what a visitor really sees, used by tests. */
-export function displayed() {
-  const eye = camera()?.position;
-  return eye ? inHall([eye.x, eye.y, eye.z]) : null;
-}
+export function displayed() { return seenFrom(); }
 
 /** Whether the picture is seen from above (x, z) [m], to a millimetre. */
 export function standsAt(x, z) {

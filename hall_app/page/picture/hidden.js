@@ -5,8 +5,7 @@
 // hidden when the walls between it and the eye cover all the directions in which its box lies. Nothing that can be
 // seen is ever left out; what a wall and a piece of furniture hide together is drawn.
 
-import { inHall } from "../look/camera.js";
-import { requestRender } from "../viser/viser_adapter.js";
+import { inHall, requestRender } from "../viser/viser_adapter.js";
 
 const HAIR = 1e-6; // [rad] between two walls that meet
 const SEEN = 0, UNSEEN = 31; // layers of three.js: cameras look at the first alone

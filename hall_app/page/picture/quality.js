@@ -1,7 +1,6 @@
 // Picture quality: resolution, sharpness of slanted textures, reflections. The visitor's choice, or the judge's.
 
-import { displayed } from "../look/camera.js";
-import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/viser_adapter.js";
+import { drawAt, framesDrawn, meshesOf, nodeNames, renderer, seenFrom } from "../viser/viser_adapter.js";
 import { boxAbout, drawSeen, ownBox } from "./hidden.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { aimLamp } from "./lamp.js";
@@ -81,7 +80,7 @@ export function createQuality({ exhibits, opaque }, onChange = () => {}) {
       layLight(room);
       reflect(reflections);
       sharpen(room, anisotropy, blend);
-      const eye = opaque.length ? displayed() : null;
+      const eye = opaque.length ? seenFrom() : null;
       if (eye) drawSeen(room, opaque, eye, ownBox);
       for (const name of nodeNames()) {
         if (!name.startsWith("/exhibits/") && !CLOSE.includes(name)) continue;

@@ -26,6 +26,32 @@ export function allowDistance(metres) { viser().configuredMaxOrbitDistance = met
 /** [w, x, y, z] by which viser turns the whole scene for three.js, null before it has. */
 export const sceneTurn = () => viser()?.nodePoseData?.[""]?.wxyz ?? null;
 
+/** A vector rotated by the unit quaternion [w, x, y, z]. */
+function rotated([w, x, y, z], [a, b, c]) {
+  const tx = 2 * (y * c - z * b), ty = 2 * (z * a - x * c), tz = 2 * (x * b - y * a);
+  return [a + w * tx + y * tz - z * ty, b + w * ty + z * tx - x * tz, c + w * tz + x * ty - y * tx];
+}
+
+/** A point of the hall [m] in three.js' world. */
+export function inThree(point) {
+  const turn = sceneTurn();
+  return turn ? rotated(turn, point) : point;
+}
+
+/** A point of three.js' world in the hall's own metres. */
+export function inHall(point) {
+  const turn = sceneTurn();
+  if (!turn) return point;
+  const [w, x, y, z] = turn;
+  return rotated([w, -x, -y, -z], point);
+}
+
+/** Where the picture is seen from, in the hall's own metres; null before there is one. */
+export function seenFrom() {
+  const eye = camera()?.position;
+  return eye ? inHall([eye.x, eye.y, eye.z]) : null;
+}
+
 /** Turn a node's drawn pose to [w, x, y, z]; false while there is no such node. */
 export function turnNode(name, wxyz) {
   const pose = viser()?.nodePoseData?.[name];
