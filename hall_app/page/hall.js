@@ -52,7 +52,7 @@ async function start() {
   const beat = createBeat((now) => frame(parts, now));
   const connection = createConnection({ view: window.HALL.view, tell: ui.connection, late: () => ui.fail("load") });
   parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk, clock, points });
-  if (hooks) parts.quality = createQuality(scene, () => {
+  if (hooks) parts.quality = createQuality(parts.visit.scene, () => {
     ui.quality(parts.quality);
     requestRender();
     beat.wake();

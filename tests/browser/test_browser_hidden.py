@@ -34,6 +34,7 @@ def page(chromium, tmp_path_factory):
     work = tmp_path_factory.mktemp("hidden")
     with running_hall(write_plain_hall(work / "content"), work) as hall:
         page = chromium.new_page(viewport={"width": 480, "height": 320})
+        page.content_folder = hall.content
         enter(page, f"{hall.url}/?lang=en")
         yield page
         page.close()
@@ -113,3 +114,12 @@ def test_the_box_behind_the_wall_costs_nothing_until_one_walks_round_it(page):
     assert 0 < behind < beside
     looks(-1.5, -1.0)
     soon(page, lambda: page.evaluate(DRAWN) is False)
+
+
+def test_a_wall_that_is_taken_out_hides_nothing_any_more(page):
+    page.evaluate("() => hall.goTo(-1.5, -1.0, Math.atan2(-4, -4))")
+    soon(page, lambda: page.evaluate(DRAWN) is False)
+    plan = page.content_folder / "plan.toml"
+    text = plan.read_text("utf-8")
+    plan.write_text(text.replace("from = [-2.0, 0.0]", "from = [1.9, 0.0]"), "utf-8")
+    soon(page, lambda: page.evaluate(DRAWN) is True)

@@ -36,9 +36,9 @@ function softwareDraws() {
   return Boolean(names) && SOFTWARE.test(String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)));
 }
 
-/** createQuality(scene, onChange) -> {choice, level, choose, frame}; onChange() when choice or level is another. */
-export function createQuality({ exhibits, opaque }, onChange = () => {}) {
-  const lit = new Map(exhibits.map((exhibit) => [`/exhibits/${exhibit.id}`, exhibit]));
+/** createQuality(shown, onChange) -> {choice, level, choose, frame}; shown() is the scene as it is described now;
+ *  onChange() when choice or level is another. */
+export function createQuality(shown, onChange = () => {}) {
   let choice = CHOICES.includes(recall(CHOSEN)) ? recall(CHOSEN) : "auto";
   const found = LEVELS.includes(recall(FOUND)) ? recall(FOUND) : null;
   const first = found ?? (softwareDraws() ? "low" : "medium");
@@ -74,7 +74,7 @@ export function createQuality({ exhibits, opaque }, onChange = () => {}) {
     /** Ahead of every picture: viser's client and a changed content bring new meshes and put old settings back. */
     frame(now) {
       watch(now);
-      const { anisotropy, blend, reflections } = SETTINGS[level()];
+      const { anisotropy, blend, reflections } = SETTINGS[level()], { exhibits, opaque } = shown();
       const room = meshesOf("/room");
       plainTones();
       layLight(room);
@@ -88,7 +88,8 @@ export function createQuality({ exhibits, opaque }, onChange = () => {}) {
         sharpen(meshes, anisotropy, blend);
         shadeBySight(meshes);
         gleam(meshes, blend);
-        if (lit.has(name)) aimLamp(meshes, lit.get(name));
+        const lit = exhibits.find((exhibit) => name === `/exhibits/${exhibit.id}`);
+        if (lit) aimLamp(meshes, lit);
         if (CLOSE.includes(name)) continue;
         showLevel(meshes, awayFrom(name));
         if (eye) drawSeen(meshes, opaque, eye, boxAbout);

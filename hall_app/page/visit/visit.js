@@ -291,6 +291,8 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     whole: () => drawnOf(nodes()).length === scene.exhibits.length,
     /** Nodes of the first view. */
     awaited: () => scene.nodes,
+    /** As it is described now. */
+    scene: () => scene,
     playing: clips.playing,
   };
 }
