@@ -30,8 +30,13 @@ def test_openings_are_seen_through():
 
 
 def test_an_opening_as_wide_as_its_wall_leaves_nothing():
-    door = {"kind": "door", "from": [-6.0, 0.0], "to": [0.0, 0.0]}
+    door = {"kind": "door", "from": [-5.1, 0.0], "to": [-0.4, 0.0]}
     assert opaque_walls(plan(wall=[wall([-5, 0], [-0.5, 0])], opening=[door])) == []
+
+
+def test_an_opening_that_reaches_beyond_its_wall_is_drawn_in_none_and_opens_none():
+    door = {"kind": "door", "from": [-6.0, 0.0], "to": [-1.0, 0.0]}
+    assert len(opaque_walls(plan(wall=[wall([-5, 0], [-0.5, 0])], opening=[door]))) == 1
 
 
 def test_lattices_are_seen_through():
@@ -40,9 +45,9 @@ def test_lattices_are_seen_through():
 
 @pytest.mark.parametrize(
     ("bays", "height", "top"),
-    [([], 4.0, None), ([], 3.9, 3.9), ([NAVE], 4.0, 4.0), ([NAVE], 5.0, None)],
-    ids=["to the ceiling", "below it", "below the nave's", "to the nave's"],
+    [([], 4.0, None), ([], 3.9, 3.9), ([NAVE], 4.0, None), ([NAVE], 3.9, 3.9)],
+    ids=["to the ceiling", "below it", "drawn up to the nave's", "below both"],
 )
-def test_a_wall_that_reaches_the_ceilings_beside_it_has_no_top(bays, height, top):
+def test_a_wall_that_is_drawn_up_to_the_ceilings_has_no_top(bays, height, top):
     (found,) = opaque_walls(plan(wall=[wall([0, -5], [0, 5], height=height)], bay=bays))
     assert found == (0.0, -5.0, 0.0, 5.0, top)

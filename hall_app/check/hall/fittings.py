@@ -11,11 +11,10 @@ from hall_app.check.hall.signs import sign_faults
 from hall_app.check.hall.walls import INSIDE, Fault, Floats, body, ends, height, measured, spot
 from hall_app.content.folder import Content
 from hall_app.content.problems import Problem
-from hall_app.content.schema.plan import Curtain, Opening, PlanFile, Wall
+from hall_app.content.schema.plan import BESIDE, Curtain, Opening, PlanFile, Wall
 from hall_app.content.schema.values import Point
 from hall_app.room.structure.regions import Regions
 
-BESIDE = 0.05  # [m] an opening may lie beside its wall's faces, as the room's geometry has it
 ARCADE = 0.2  # [m] the same of a high window, from the line where two ceilings meet
 COLUMN = 0.25  # [m] a curtain's end may be beside a column
 

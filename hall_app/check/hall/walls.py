@@ -35,7 +35,7 @@ def body(wall: Wall) -> BaseGeometry:
 
 def height(wall: Wall, plan: PlanFile, regions: Regions) -> float:
     """How high a wall is drawn [m]: one as high as the rooms goes up to the ceiling on either side."""
-    if wall.height <= plan.height - 0.05:
+    if not plan.to_ceiling(wall):
         return wall.height
     line = ends(wall)
     along = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from hall_app.content.schema.values import Bilingual, ContentPath, Metres, Point, Ring, Table, Text
 
 Hung = Annotated[float, Field(ge=0.1, le=20)]  # [m] a side of what hangs on a wall
+BESIDE = 0.05  # [m] an opening may lie beside the faces of the wall that it is in
+TO_CEILING = (
+    0.05  # [m] below the rooms' height: from there on a wall is drawn up to whatever ceiling is over it
+)
 PAINTED = (".jpg", ".jpeg", ".png", ".webp")  # what the room's letters can lie beside on one sheet
 
 
@@ -39,6 +45,16 @@ class Opening(Table):
     end: Point = Field(alias="to", description="the other end, [x, z]")
     sill: float = Field(0.0, ge=0, le=5, description="height of its lower edge [m]")
     height: Metres = Field(2.4, description="height of the opening itself [m]")
+
+    def beside(self, start: ArrayLike, end: ArrayLike, away: float) -> bool:
+        """Whether both its ends lie within `away` [m] of the line start to end."""
+        line = np.array([start, end], float)
+        along = line[1] - line[0]
+        for point in np.array([self.start, self.end], float):
+            share = np.clip((point - line[0]) @ along / (along @ along), 0.0, 1.0)
+            if np.linalg.norm(point - line[0] - share * along) >= away:
+                return False
+        return True
 
 
 class Round(Table):
@@ -154,6 +170,15 @@ class PlanFile(Table):
     lantern: tuple[Lantern, ...] = Field((), description="lanterns, one [[lantern]] each")
     curtain: tuple[Curtain, ...] = Field((), description="curtains, one [[curtain]] each")
     sign: tuple[Sign, ...] = Field((), description="plaque, banners and pictures, one [[sign]] each")
+
+    def to_ceiling(self, wall: Wall) -> bool:
+        """Whether a wall is drawn up to the ceilings beside it, whatever their height."""
+        return wall.height > self.height - TO_CEILING
+
+    def openings_in(self, wall: Wall) -> list[Opening]:
+        """The doors and windows that are drawn in a wall: both ends of each lie in it, or close beside its faces."""
+        away = wall.thickness / 2 + BESIDE
+        return [opening for opening in self.opening if opening.beside(wall.start, wall.end, away)]
 
     def height_over(self, bay: Bay) -> float:
         """Height [m] of the ceiling over a bay: its own, else the nave's over the bay named nave, else the rooms'."""

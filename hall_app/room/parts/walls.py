@@ -79,7 +79,7 @@ def _clerestory(start: Floats, end: Floats, low: float, plan: PlanFile, regions:
     it, a rail at its foot and a plate at its head."""
     along = (end - start) / np.linalg.norm(end - start)
     out = _CLERESTORY * np.array([-along[1], along[0]])
-    holes = [o for o in plan.opening if o.kind == "window" and o.sill > low and _near(o, start, end, 0.2)]
+    holes = [o for o in plan.opening if o.kind == "window" and o.sill > low and o.beside(start, end, 0.2)]
     face = _face(start + out, end + out, math.inf, holes, 0.16, regions)
     right, up, _ = face.frame.axes
     patches = panel(face.frame.at, right, up, face.region(low, None), "plaster")
@@ -108,8 +108,8 @@ def _faces(wall: Wall, plan: PlanFile, regions: Regions) -> list[Face]:
     a, b = np.asarray(wall.start, float), np.asarray(wall.end, float)
     along = (b - a) / np.linalg.norm(b - a)
     out = np.array([-along[1], along[0]]) * wall.thickness / 2
-    top = math.inf if wall.height > plan.height - 0.05 else wall.height
-    holes = [opening for opening in plan.opening if _near(opening, a, b, wall.thickness / 2 + 0.05)]
+    top = math.inf if plan.to_ceiling(wall) else wall.height
+    holes = plan.openings_in(wall)
     depth = min(0.16, 0.45 * wall.thickness) if regions.along(a, b) else 0.16
     pairs = ((a + out, b + out), (b - out, a - out))
     faces = [_face(start, end, top, holes, depth, regions) for start, end in pairs]
@@ -132,14 +132,6 @@ def _face(
     facing = float(np.degrees(np.arctan2(out[0], out[1])))
     frame = Frame(np.array([start[0], 0.0, start[1]]), facing)
     return Face(frame, length, top, tuple(spans), tuple(placed), depth)
-
-
-def _near(opening: Opening, start: Floats, end: Floats, away: float) -> bool:
-    """Whether both ends of the opening lie within `away` [m] of the line start → end."""
-    import shapely
-
-    line = shapely.LineString([start, end])
-    return all(line.distance(shapely.Point(p)) < away for p in (opening.start, opening.end))
 
 
 def _drawn(face: Face, plan: PlanFile) -> list[Patch]:
@@ -189,9 +181,9 @@ def _ends(wall: Wall, plan: PlanFile, regions: Regions) -> list[Patch]:
         ceiling = regions.height_at(*spot)
         if ceiling is not None and not others.intersects(shapely.Point(spot)):
             frame = Frame.on_floor(at, facing)
-            top = ceiling if wall.height > plan.height - 0.05 else wall.height
+            top = ceiling if plan.to_ceiling(wall) else wall.height
             patches += box(frame, (-0.06, 0, -half), (0.03, top, half), "lacquer", skip="bottom top")
-    if wall.height <= plan.height - 0.05 and regions.along(a, b):
+    if not plan.to_ceiling(wall) and regions.along(a, b):
         frame = Frame.on_floor((a + b) / 2, facing)
         patches += box(
             frame,
