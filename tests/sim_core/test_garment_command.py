@@ -87,15 +87,15 @@ name = "NAME"
 pattern = "patterns/robe.toml"
 weave = "weaves/juan.toml"
 weaves = { band = "weaves/gauze.toml" }
-edge = 0.08
+edge = 0.05
 [[layer.step]]
 do = "sew"
-seconds = 0.04
+seconds = 0.2
 [[layer.step]]
 do = "weld"
 [[layer.step]]
 do = "settle"
-seconds = 0.04
+seconds = 0.12
 """
 
 
