@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from sim_core import metrics
 from sim_core.body import Figure, Mannequin, TBar, pose_named
@@ -189,6 +190,25 @@ def test_wrapped_cloth_is_not_strained_and_keeps_its_layers_apart(
         np.arctan2(x[:, 0], x[:, 2] - middle[2])[np.argsort(cloth.vertices[:, 0], kind="stable")]
     )
     assert np.ptp(ahead) / (2 * np.pi) == pytest.approx(turns, abs=0.1)
+
+
+@pytest.mark.parametrize("edge", [0.016, 0.03])
+def test_wrapped_cloth_keeps_clear_of_sharp_corners(tmp_path: Path, edge: float) -> None:
+    """Of what it goes round, with its faces too: a stiff edge beneath a sash stands out like this post's corners."""
+    (tmp_path / "piece.toml").write_text(LAPPED, "utf-8")
+    pattern = Pattern.load(tmp_path / "piece.toml")
+    post = trimesh.creation.box((0.3, 1.0, 0.3))
+    post.apply_translation((0.0, 0.5, 0.0))
+    corners = np.arange(len(post.vertices))
+    own = post.vertices * [0.1, 1.0, 0.1]  # a thin wearer, who is told by vertices alone, in a post it wears
+    ground = Ground(
+        own, post.faces, corners, {"waist": np.array([0.0, 0.8, 0.0])}, worn=((post.vertices, post.faces),)
+    )
+    cloth = pattern.cloth(edge)
+    x = Wrapped().start(pattern, cloth, ground, np.random.default_rng(0))
+    found = metrics.penetration(x, cloth.faces, post.vertices, post.faces)
+    assert found.total == 0
+    assert min(found.clearance) > 0.0025
 
 
 @pytest.mark.slow

@@ -16,6 +16,8 @@ from sim_core.mesh.geometry import line_girth
 __all__ = ["Wrapped"]
 
 FINE = 0.002  # [m] between the points of the line
+CLOSE = 1e-4  # [m] to which it is found how far off a line has to go round
+ABOVE = 0.01  # [m] over the cloth's top, that it is drawn round as well
 SLAB = 0.01  # [m] of the wearer that a line about it is drawn round at least
 LEVELS = 33  # heights at which pleats are laid about a wearer that is wider below
 
@@ -61,7 +63,8 @@ class Wrapped:
         width = float(high[0] - low[0])
         need = line_girth(hull) + 2 * np.pi * room
         _check_width(pattern, width, need, self.mark)
-        if closed or width < 1.02 * need:
+        room = _off(hull, room, _longest(cloth), ground.clearance)
+        if closed or width < 1.02 * (line_girth(hull) + 2 * np.pi * room):
             line = _around(hull, np.radians(self.begin), (width - line_girth(hull)) / (2 * np.pi), 0.0, width)
         else:
             line = _around(hull, np.radians(self.begin), room, self.gap, width)
@@ -83,9 +86,12 @@ def _check_width(pattern: Pattern, width: float, need: float, mark: str) -> None
 def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     """Corners (n, 2) [m] in x and z of the convex hull of trunk, legs and garments between two heights, one way round
     from the front to the wearer's left."""
-    worn = [vertices[_on_trunk(ground, vertices)] for vertices, _ in ground.worn]
-    points = np.concatenate([ground.vertices[ground.trunk], *worn])
-    points = points[(points[:, 1] >= low) & (points[:, 1] <= high + 0.01)]
+    worn = [
+        _between(vertices, faces, _on_trunk(ground, vertices), low, high) for vertices, faces in ground.worn
+    ]
+    own = ground.vertices[ground.trunk]
+    own = own[(own[:, 1] >= low) & (own[:, 1] <= high + ABOVE)]
+    points = np.concatenate([own, *worn])
     if len(points) < 3:
         raise SimCoreError(
             f"place: nothing of the wearer between {low:.2f} and {high:.2f} m – choose another mark"
@@ -95,6 +101,52 @@ def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     ahead = np.arctan2(hull[:, 0], hull[:, 1])
     hull = hull[np.argsort(ahead - ahead.min())]
     return hull
+
+
+def _between(
+    vertices: np.ndarray, faces: np.ndarray, counts: np.ndarray, low: float, high: float
+) -> np.ndarray:
+    """Points (n, 3) [m] of a mesh between two heights: vertices there that count (V,), and where edges cross either."""
+    high += ABOVE
+    y = vertices[:, 1]
+    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    edges = edges[counts[edges].all(1)]
+    found = [vertices[counts & (y >= low) & (y <= high)]]
+    for height in (low, high):
+        a, b = vertices[edges[(y[edges] < height).sum(1) == 1]].transpose(1, 0, 2)
+        share = (height - a[:, 1]) / (b[:, 1] - a[:, 1])
+        found.append(a + share[:, None] * (b - a))
+    return np.concatenate(found)
+
+
+def _longest(cloth: Cloth) -> float:
+    """How far [m] an edge of its mesh goes along x at most."""
+    x = cloth.vertices[cloth.faces, 0]
+    return float(np.abs(x - np.roll(x, 1, axis=1)).max())
+
+
+def _off(hull: np.ndarray, least: float, chord: float, clearance: float) -> float:
+    """How far [m] off a convex hull (n, 2), at least, a line goes round whose chords [m] keep the clearance of it."""
+    low, high = least, least + chord
+    if _nearest(hull, low, chord) >= clearance:
+        return low
+    while high - low > CLOSE:
+        middle = (low + high) / 2
+        low, high = (low, middle) if _nearest(hull, middle, chord) >= clearance else (middle, high)
+    return high
+
+
+def _nearest(hull: np.ndarray, away: float, chord: float) -> float:
+    """How near [m] chords of a line `away` [m] off a convex hull (n, 2) come to it; below 0 one cuts it."""
+    line = _around(hull, 0.0, away, 0.0, np.inf)
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+    far = (arc[:-1] + chord) % arc[-1]
+    begin, end = line[:-1], np.stack([np.interp(far, arc, line[:, c]) for c in range(2)], axis=1)
+    across = (end - begin)[:, ::-1] * [1.0, -1.0]
+    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-12)[:, None]
+    beside = np.einsum("nc,nmc->nm", across, begin[:, None] - hull[None])
+    # The hull lies on one side of all of them, whichever way round it is.
+    return float(beside.min() if beside.mean() > 0 else -beside.max())
 
 
 def _on_trunk(ground: Ground, points: np.ndarray) -> np.ndarray:
