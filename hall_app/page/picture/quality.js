@@ -1,6 +1,7 @@
 // Picture quality: resolution, sharpness of slanted textures, reflections. The visitor's choice, or the judge's.
 
 import { drawAt, framesDrawn, meshesOf, nodeNames, renderer, seenFrom } from "../viser/viser_adapter.js";
+import { layerBeneath } from "./behind.js";
 import { boxAbout, drawSeen, ownBox } from "./hidden.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { aimLamp } from "./lamp.js";
@@ -91,6 +92,7 @@ export function createQuality(shown, onChange = () => {}) {
         const lit = exhibits.find((exhibit) => name === `/exhibits/${exhibit.id}`);
         if (lit) aimLamp(meshes, lit);
         if (CLOSE.includes(name)) continue;
+        layerBeneath(meshes);
         showLevel(meshes, awayFrom(name));
         if (eye) drawSeen(meshes, opaque, eye, boxAbout);
       }

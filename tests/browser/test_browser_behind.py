@@ -1,0 +1,82 @@
+"""What is worn beneath is drawn behind what is worn over it: thinned cloth lets it through by a few millimetres."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from bench.browser import enter, soon
+from PIL import Image
+from plain_hall import write_plain_hall
+from running_hall import running_hall
+
+from sim_core.gltf import GlbFile
+
+pytestmark = [pytest.mark.browser]
+
+WIDE, HIGH, EYE = 480, 320, 1.6  # pixels, and the height [m] a visitor looks from
+PARTS = (  # node, material, radius [m], colour: each comes 1 mm through what is worn over it
+    ("inner", "silk_hall", 0.402, (0.0, 1.0, 0.0)),
+    ("inner 2", "silk_hall", 0.3, (0.0, 1.0, 0.0)),
+    ("coat", "silk_hall", 0.401, (1.0, 0.0, 0.0)),
+    ("figure", "linen", 0.403, (0.0, 0.0, 1.0)),
+    ("shoes", "shoes", 0.1, (0.0, 0.0, 1.0)),
+    ("inner afar", "silk_hall", 0.402, (0.0, 1.0, 0.0)),
+    ("coat afar", "silk_hall", 0.401, (1.0, 0.0, 0.0)),
+)
+BEHIND = """
+() => {
+  const found = {};
+  window.__viserMutable.nodeRefFromName["/exhibits/box"]?.traverse((mesh) => {
+    if (mesh.isMesh) found[mesh.userData.name ?? mesh.name] = mesh.material.userData.behind ?? 0;
+  });
+  return found;
+}
+"""
+
+
+def dressed(path: Path) -> None:
+    glb = GlbFile()
+    for name, material, radius, colour in PARTS:
+        ball = trimesh.creation.icosphere(3 if "afar" not in name else 2, radius)
+        look = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
+        paint = glb.material({"name": material, "pbrMetallicRoughness": look})
+        glb.mesh(name, ball.vertices + [0, EYE, 0], ball.faces.astype(np.int32), paint)
+    glb.levels(range(5), range(5, 7), 6.0)
+    path.write_bytes(glb.bytes("dressed", []))
+
+
+@pytest.fixture(scope="module")
+def page(chromium, tmp_path_factory):
+    work = tmp_path_factory.mktemp("behind")
+    content = write_plain_hall(work / "content")
+    dressed(content / "exhibits/box/box.glb")
+    with running_hall(content, work) as hall:
+        page = chromium.new_page(viewport={"width": WIDE, "height": HIGH})
+        enter(page, f"{hall.url}/?lang=en")
+        yield page
+        page.close()
+
+
+def test_each_layer_lies_behind_those_over_it_and_the_figure_behind_all(page):
+    soon(page, lambda: len(page.evaluate(BEHIND)) >= len(PARTS))
+    found = page.evaluate(BEHIND)
+    assert found["coat"] == found["coat afar"] == found["shoes"] == 0
+    assert 0 < found["inner"] == found["inner 2"] == found["inner afar"] < found["figure"]
+
+
+@pytest.mark.parametrize("away", [1.7, 7.7])
+def test_what_comes_through_by_two_millimetres_is_not_seen(page, away):
+    """In the middle of the balls: at their rim the larger ones are seen, as they should be."""
+    page.evaluate("(x) => hall.goTo(x, 3.0, -Math.PI / 2)", 2.5 - away)
+
+    def channels() -> set[int]:
+        picture = Image.open(BytesIO(page.screenshot())).convert("RGB")
+        middle = picture.crop((WIDE // 2 - 5, HIGH // 2 - 5, WIDE // 2 + 5, HIGH // 2 + 5))
+        colours = np.asarray(middle, int).reshape(-1, 3)
+        return set(colours.argmax(1)) if np.ptp(colours, axis=1).min() > 60 else set()
+
+    soon(page, lambda: channels() == {0})
