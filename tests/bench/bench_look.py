@@ -10,6 +10,9 @@ default    the same models with lit materials under viser's default environment 
 
 beside     ambient light beside that environment map: what a viser program gets that adds the light and stops there
 
+An earlier page leaves it to viser how many pixels it draws, which follows the machine's speed from picture to picture:
+it is held to this page's.
+
 All halls run at once and are drawn in turn by one Chromium at 960x540, with the picture quality that software WebGL is
 given ("low": two thirds of the pixels each way, textures by one bilinear look-up); a picture's cost is the CPU time of
 Chromium's GPU process, which holds the software renderer. Best of several rounds.
@@ -50,6 +53,14 @@ DRAW = """
   };
   more();
 })
+"""
+
+
+SIZE = """
+() => {
+  const gl = window.__viserMutable.scene.__r3f.root.getState().gl;
+  return [gl.domElement.width, gl.domElement.height, gl.getPixelRatio()];
+}
 """
 
 
@@ -115,6 +126,14 @@ def in_turn(
     return found
 
 
+def held_to(page, pixels: list[float]) -> None:
+    """Lets a page draw so many pixels (wide, high, and for each of the page's), whatever the machine's speed."""
+    page.evaluate("(ratio) => window.__viserTestpoints.devSettings.set({ fixedDpr: ratio })", pixels[2])
+    page.evaluate(DRAW, 500)
+    if (found := page.evaluate(SIZE)) != pixels:
+        raise RuntimeError(f"a page draws {found} pixels instead of {pixels} – halls that draw as many can be compared")
+
+
 def views(page, exhibit: str | None = None) -> dict[str, list[float]]:
     """The entry, and the place before an exhibit, the first one where none is named."""
     scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
@@ -169,6 +188,9 @@ def beside_earlier(rounds: int, seconds: float, halls: dict[str, Path], exhibit:
             )
             pages[name] = bare_page(browser, hall.url)
             pages[name].wait_for_timeout(8000)  # an earlier page tells nobody when all has come
+        pixels = pages["now"].evaluate(SIZE)
+        for page in pages.values():
+            held_to(page, pixels)
         return in_turn(pages, {name: views(page, exhibit) for name, page in pages.items()}, rounds, seconds)
 
 

@@ -25,6 +25,14 @@ DRAWN = """
   return masks.length ? masks.some(Boolean) : null;
 }
 """
+ABOUT = """
+async ([kind, [a, b, c]]) => {
+  const {boxAbout} = await import("/static/picture/hidden.js");
+  const geometry = {boundingSphere: {center: {x: 0, y: 0, z: 0}, radius: 0.5}};
+  return boxAbout({...kind, geometry, matrixWorld: {elements: [a, 0, 0, 0, 0, b, 0, 0, 0, 0, c, 0, 1, 1, 1, 1]}});
+}
+"""
+WALL = "[[wall]]\nfrom = [-2.0, 0.0]\nto = [2.0, 0.0]\nthickness = 0.05\n"
 TRIANGLES = "() => window.__viserMutable.scene.__r3f.root.getState().gl.info.render.triangles"
 
 
@@ -116,10 +124,35 @@ def test_the_box_behind_the_wall_costs_nothing_until_one_walks_round_it(page):
     soon(page, lambda: page.evaluate(DRAWN) is False)
 
 
-def test_a_wall_that_is_taken_out_hides_nothing_any_more(page):
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("from = [-2.0, 0.0]", "from = [1.9, 0.0]"), ("thickness = 0.05", 'kind = "lattice"'), (WALL, "")],
+    ids=["shortened", "a lattice", "the last one"],
+)
+def test_a_wall_that_is_taken_out_hides_nothing_any_more(page, old, new):
     page.evaluate("() => hall.goTo(-1.5, -1.0, Math.atan2(-4, -4))")
     soon(page, lambda: page.evaluate(DRAWN) is False)
     plan = page.content_folder / "plan.toml"
     text = plan.read_text("utf-8")
-    plan.write_text(text.replace("from = [-2.0, 0.0]", "from = [1.9, 0.0]"), "utf-8")
+    assert old in text
+    plan.write_text(text.replace(old, new), "utf-8")
     soon(page, lambda: page.evaluate(DRAWN) is True)
+    plan.write_text(text, "utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "scales", "reach"),
+    [
+        ({}, [1, 1, 1], 0.5),
+        ({}, [0.1, 1, 3], 1.5),
+        ({"isInstancedMesh": True}, [1, 1, 1], None),
+        ({"isSkinnedMesh": True}, [1, 1, 1], None),
+    ],
+)
+def test_the_box_about_a_mesh_holds_all_of_it(page, kind, scales, reach):
+    """However its node is scaled; where it lies is not told of copies, and of what bones move."""
+    box = page.evaluate(ABOUT, [kind, scales])
+    if reach is None:
+        assert box is None
+    else:
+        assert np.allclose(np.array(box)[2:4] - box[:2], 2 * reach)

@@ -44,11 +44,12 @@ export function hides(walls, [x, y, z], [lowX, lowZ, highX, highZ, boxTop]) {
   return reached >= last;
 }
 
-/** Draw of these meshes what is seen; boxOf(mesh): as for `hides`. Idempotent. */
+/** Draw of these meshes what is seen; boxOf(mesh): as for `hides`, null of what may be anywhere. Idempotent. */
 export function drawSeen(meshes, walls, eye, boxOf) {
   let changed = false;
   for (const mesh of meshes) {
-    const layer = hides(walls, eye, boxOf(mesh)) ? UNSEEN : SEEN;
+    const box = walls.length ? boxOf(mesh) : null;
+    const layer = box && hides(walls, eye, box) ? UNSEEN : SEEN;
     if (mesh.userData.layer === layer) continue;
     mesh.userData.layer = layer;
     mesh.layers.set(layer);
@@ -64,11 +65,12 @@ export function ownBox({ geometry }) {
   return [min.x, min.z, max.x, max.z, max.y];
 }
 
-/** The box about the ball in which a mesh stays, however it moves. */
-export function boxAbout({ geometry, matrixWorld: { elements: m } }) {
+/** The box about the ball in which a mesh stays, however it moves; null of one whose corners its geometry does not tell. */
+export function boxAbout({ isInstancedMesh, isSkinnedMesh, geometry, matrixWorld: { elements: m } }) {
+  if (isInstancedMesh || isSkinnedMesh) return null;
   if (!geometry.boundingSphere) geometry.computeBoundingSphere();
   const { center: { x: a, y: b, z: c }, radius } = geometry.boundingSphere;
   const [x, y, z] = inHall([0, 1, 2].map((k) => m[k] * a + m[4 + k] * b + m[8 + k] * c + m[12 + k]));
-  const reach = radius * Math.hypot(m[0], m[1], m[2]);
+  const reach = radius * Math.max(...[0, 4, 8].map((k) => Math.hypot(m[k], m[k + 1], m[k + 2])));
   return [x - reach, z - reach, x + reach, z + reach, y + reach];
 }

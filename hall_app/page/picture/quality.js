@@ -81,7 +81,7 @@ export function createQuality(shown, onChange = () => {}) {
       layLight(room);
       reflect(reflections);
       sharpen(room, anisotropy, blend);
-      const eye = opaque.length ? seenFrom() : null;
+      const eye = seenFrom();
       if (eye) drawSeen(room, opaque, eye, ownBox);
       for (const name of nodeNames()) {
         if (!name.startsWith("/exhibits/") && !CLOSE.includes(name)) continue;

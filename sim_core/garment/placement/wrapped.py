@@ -16,6 +16,7 @@ from sim_core.mesh.geometry import line_girth
 __all__ = ["Wrapped"]
 
 FINE = 0.002  # [m] between the points of the line
+LAPS = 1.02  # times the way round, from which cloth laps over itself
 CLOSE = 1e-4  # [m] to which it is found how far off a line has to go round
 ABOVE = 0.01  # [m] over the cloth's top, that it is drawn round as well
 SLAB = 0.01  # [m] of the wearer that a line about it is drawn round at least
@@ -55,7 +56,7 @@ class Wrapped:
             folds = Folds.of(pattern, cloth)
             need = line_girth(hulls[0]) + 2 * np.pi * room
             _check_width(pattern, folds.width, need, self.mark)
-            if closed or folds.width < 1.02 * need:
+            if closed or folds.width < LAPS * need:
                 room += (folds.width - need) / (2 * np.pi)
             tent = Tent.over(hulls, depths, np.radians(self.begin), room)
             return tent.hung(folds, cloth.vertices[:, 1] - low[1], self.gap) + [0.0, top, 0.0]
@@ -63,10 +64,11 @@ class Wrapped:
         width = float(high[0] - low[0])
         need = line_girth(hull) + 2 * np.pi * room
         _check_width(pattern, width, need, self.mark)
-        room = _off(hull, room, _longest(cloth), ground.clearance)
-        if closed or width < 1.02 * (line_girth(hull) + 2 * np.pi * room):
-            line = _around(hull, np.radians(self.begin), (width - line_girth(hull)) / (2 * np.pi), 0.0, width)
+        off = (width - line_girth(hull)) / (2 * np.pi)  # at which it goes round once
+        if closed or width < LAPS * need:
+            line = _around(hull, np.radians(self.begin), off, 0.0, width)
         else:
+            room = min(_off(hull, room, _longest(cloth), ground.clearance), off / LAPS)
             line = _around(hull, np.radians(self.begin), room, self.gap, width)
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
         along = (cloth.vertices[:, 0] - low[0]) * (arc[-1] / width)
