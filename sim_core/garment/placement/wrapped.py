@@ -64,11 +64,12 @@ class Wrapped:
         width = float(high[0] - low[0])
         need = line_girth(hull) + 2 * np.pi * room
         _check_width(pattern, width, need, self.mark)
-        off = (width - line_girth(hull)) / (2 * np.pi)  # at which it goes round once
+        girth = line_girth(hull)
         if closed or width < LAPS * need:
-            line = _around(hull, np.radians(self.begin), off, 0.0, width)
+            line = _around(hull, np.radians(self.begin), (width - girth) / (2 * np.pi), 0.0, width)
         else:
-            room = min(_off(hull, room, _longest(cloth), ground.clearance), off / LAPS)
+            widest = (width / LAPS - girth) / (2 * np.pi)  # further off it would not lap any more
+            room = min(_off(hull, room, _longest(cloth), ground.clearance), widest)
             line = _around(hull, np.radians(self.begin), room, self.gap, width)
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
         along = (cloth.vertices[:, 0] - low[0]) * (arc[-1] / width)
