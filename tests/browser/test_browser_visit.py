@@ -123,6 +123,44 @@ def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
     assert page.evaluate("() => hall.opened()") == GARMENT
 
 
+LOOKED_AT = """
+async ([ids, exhibits, pose, current]) => {
+  const {lookedAt} = await import("/static/ui/map/geometry.js");
+  return lookedAt(new Set(ids), exhibits, pose, current);
+}
+"""
+AROUND = [{"id": "ahead", "x": 0, "z": -2}, {"id": "right", "x": 2, "z": 0}, {"id": "behind", "x": 0, "z": 1}]
+
+
+@pytest.mark.parametrize(
+    ("ids", "yaw", "current", "meant"),
+    [
+        (["ahead", "right", "behind"], 0.0, None, "ahead"),
+        (["right", "behind"], 0.0, None, "right"),
+        (["ahead", "right"], -1.5, None, "right"),
+        (["ahead", "right"], -0.75, None, "ahead"),  # a little more nearly
+        (["ahead", "right"], -0.75, "right", "right"),  # but not so clearly that the caption changes
+        (["ahead", "behind"], 3.1 - 20 * 3.141592653589793, None, "behind"),  # after ten turns
+        ([], 0.0, "ahead", None),
+        (["gone"], 0.0, "gone", None),
+    ],
+)
+def test_of_several_exhibits_the_one_ahead_is_meant(page, ids, yaw, current, meant):
+    pose = {"x": 0.0, "z": 0.0, "yaw": yaw}
+    assert page.evaluate(LOOKED_AT, [ids, AROUND, pose, current]) == meant
+
+
+def test_between_two_exhibits_the_caption_names_the_one_that_is_looked_at(page):
+    """Whichever noticed the visitor last: the robe on its bar stands beside the wrap robe, and comes as near."""
+    closed(page)
+    stand_before(page, "quju")
+    page.locator("[data-testid=caption]", has_text="Curved wrap robe").wait_for(timeout=60_000)
+    page.evaluate("() => hall.goTo(-8.3, 4.1, Math.PI / 2)")
+    page.locator("[data-testid=caption]", has_text="Straight robe").wait_for(timeout=60_000)
+    stand_before(page, "quju")
+    page.locator("[data-testid=caption]", has_text="Curved wrap robe").wait_for(timeout=60_000)
+
+
 # Where the face of an exhibit is drawn that is nearest to the eye, of those that nothing of the page covers [px].
 NEAREST = """(id) => {
   const { camera, nodeRefFromName } = window.__viserMutable;

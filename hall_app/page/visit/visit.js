@@ -13,7 +13,7 @@ import { createLater } from "./later.js";
 import { createMark } from "./mark.js";
 import { createSpot, recallSpot } from "./spot.js";
 import { createTurning } from "../look/turning.js";
-import { standBefore } from "../ui/map/geometry.js";
+import { lookedAt, standBefore } from "../ui/map/geometry.js";
 import { createWalk } from "../walk/walk.js";
 
 const LONGEST_FRAME = 0.5; // [s] a longer one is no picture of a slow machine: the page itself stood still, or was hidden
@@ -33,6 +33,7 @@ const clamp = (value) => Math.max(-1, Math.min(1, value));
  */
 export function createVisit({ scene, grid, display, ui, wake, connection, clock, points }) {
   let entered = false, opened = null, near = null, headingThere = null;
+  const beside = new Set(); // exhibits that have noticed the visitor
   let compares = false, compared = null, comparison = null; // wanted; {clip} while it is shown; of the open exhibit
   let asking = 0, early = null; // the next time it is asked for; the last answer since the exhibit was opened
   let stick = { forward: 0, right: 0, since: 0 };
@@ -102,6 +103,10 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
   }
 
   function moved(pose) {
+    if (pose.t === "hi") { // whoever greets us notices us anew
+      beside.clear();
+      look();
+    }
     if (pose.t === "hi" && pose.revision !== scene.revision) refresh(); // changed while we were not there to hear it
     if (pose.first) {
       arrived = true;
@@ -180,7 +185,16 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
   function comeNear({ id, on, glow: lit, caption, node }) {
     if (lit) glow.near(node, on);
     if (!caption) return;
-    near = on ? id : (near === id ? null : near);
+    if (on) beside.add(id);
+    else beside.delete(id);
+    look();
+  }
+
+  /** Of all it stands beside, the caption names the exhibit that the visitor looks at, which Enter opens. */
+  function look() {
+    const next = lookedAt(beside, scene.exhibits, { ...walk.pose, yaw: gaze.yaw }, near);
+    if (next === near) return;
+    near = next;
     ui.near(near);
   }
 
@@ -224,6 +238,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     head.frame(dt, now / 1000);
     walk.frame(walked, forward, right, gaze.yaw, gaze.eye);
     ui.pose({ x: walk.pose.x, z: walk.pose.z, yaw: gaze.yaw });
+    if (beside.size > 1) look();
   }
 
   const nodes = () => scene.exhibits.map(({ id }) => `${EXHIBITS}${id}`);

@@ -104,3 +104,19 @@ export function nearestExhibit([x, z], exhibits, reach) {
   }
   return best;
 }
+
+const STAYS = 0.15; // [rad] by which another has to be more nearly ahead than the one that is looked at already
+
+/** Of the exhibits with these ids the one that whoever stands at {x, z, yaw} looks at most nearly, or null; it stays `current`
+ *  while no other is clearly more nearly ahead. */
+export function lookedAt(ids, exhibits, { x, z, yaw }, current = null) {
+  let best = null, least = Infinity;
+  for (const exhibit of exhibits) {
+    if (!ids.has(exhibit.id)) continue;
+    const turn = Math.atan2(x - exhibit.x, z - exhibit.z) - yaw;
+    const aside = Math.abs(turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI)));
+    const off = aside - (exhibit.id === current ? STAYS : 0);
+    if (off < least) [best, least] = [exhibit.id, off];
+  }
+  return best;
+}
