@@ -184,6 +184,7 @@ NEAREST = """(id) => {
 
 def test_click_on_the_exhibit_opens_it(page):
     closed(page)
+    stand_before(page, GARMENT)
     seen: list[tuple[float, float] | None] = []  # None: out of sight
 
     def settled() -> bool:  # the view may be on its way back, in jerks
