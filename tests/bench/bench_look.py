@@ -131,7 +131,9 @@ def held_to(page, pixels: list[float]) -> None:
     page.evaluate("(ratio) => window.__viserTestpoints.devSettings.set({ fixedDpr: ratio })", pixels[2])
     page.evaluate(DRAW, 500)
     if (found := page.evaluate(SIZE)) != pixels:
-        raise RuntimeError(f"a page draws {found} pixels instead of {pixels} – halls that draw as many can be compared")
+        raise RuntimeError(
+            f"a page draws {found} pixels instead of {pixels} – halls that draw as many can be compared"
+        )
 
 
 def views(page, exhibit: str | None = None) -> dict[str, list[float]]:
