@@ -8,16 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from bench.browser import enter, soon
+from bench.browser import soon
 from PIL import Image
-from plain_hall import write_plain_hall
-from running_hall import running_hall
+from plain_page import plain_page
 
 from sim_core.gltf import GlbFile
 
 pytestmark = [pytest.mark.browser]
 
-WIDE, HIGH, EYE = 480, 320, 1.6  # pixels, and the height [m] a visitor looks from
+EYE = 1.6  # [m] from which height a visitor looks
 PARTS = (  # node, material, radius [m], colour: each comes 1 mm through what is worn over it
     ("inner", "silk_hall", 0.402, (0.0, 1.0, 0.0)),
     ("inner 2", "silk_hall", 0.3, (0.0, 1.0, 0.0)),
@@ -63,15 +62,8 @@ def balls(path: Path, parts: tuple = PARTS) -> None:
 
 @pytest.fixture(scope="module")
 def page(chromium, tmp_path_factory):
-    work = tmp_path_factory.mktemp("behind")
-    content = write_plain_hall(work / "content")
-    balls(content / "exhibits/box/box.glb")
-    with running_hall(content, work) as hall:
-        page = chromium.new_page(viewport={"width": WIDE, "height": HIGH})
-        page.content_folder = hall.content
-        enter(page, f"{hall.url}/?lang=en")
+    with plain_page(chromium, tmp_path_factory.mktemp("behind"), balls) as page:
         yield page
-        page.close()
 
 
 def test_each_layer_lies_behind_those_over_it_and_the_figure_behind_all(page):
@@ -95,7 +87,8 @@ def test_what_comes_through_by_two_millimetres_is_not_seen(page, away):
 
     def channels() -> set[int]:
         picture = Image.open(BytesIO(page.screenshot())).convert("RGB")
-        middle = picture.crop((WIDE // 2 - 5, HIGH // 2 - 5, WIDE // 2 + 5, HIGH // 2 + 5))
+        x, y = picture.width // 2, picture.height // 2
+        middle = picture.crop((x - 5, y - 5, x + 5, y + 5))
         colours = np.asarray(middle, int).reshape(-1, 3)
         return set(colours.argmax(1)) if np.ptp(colours, axis=1).min() > 60 else set()
 

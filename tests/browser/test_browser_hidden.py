@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bench.browser import enter, soon
-from plain_hall import write_plain_hall
-from running_hall import running_hall
+from bench.browser import soon
+from plain_page import plain_page
 
 pytestmark = [pytest.mark.browser]
 
@@ -39,13 +38,8 @@ TRIANGLES = "() => window.__viserMutable.scene.__r3f.root.getState().gl.info.ren
 @pytest.fixture(scope="module")
 def page(chromium, tmp_path_factory):
     """The plain hall: a wall across z = 0 from x = -2 to 2, a box of .4 m radius at (2.5, 3)."""
-    work = tmp_path_factory.mktemp("hidden")
-    with running_hall(write_plain_hall(work / "content"), work) as hall:
-        page = chromium.new_page(viewport={"width": 480, "height": 320})
-        page.content_folder = hall.content
-        enter(page, f"{hall.url}/?lang=en")
+    with plain_page(chromium, tmp_path_factory.mktemp("hidden")) as page:
         yield page
-        page.close()
 
 
 def seen_by_rays(walls: np.ndarray, eye: np.ndarray, box: np.ndarray, count: int = 24) -> bool:

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from bench.browser import enter, soon
-from plain_hall import write_plain_hall
-from running_hall import running_hall
+from bench.browser import soon
+from plain_page import plain_page
 
 from hall_app.content.models import read_glb
 from sim_core.gltf import GlbFile
@@ -50,14 +49,8 @@ def test_other_readers_see_the_fine_level_alone(tmp_path):
 
 @pytest.fixture(scope="module")
 def page(chromium, tmp_path_factory):
-    work = tmp_path_factory.mktemp("levels")
-    content = write_plain_hall(work / "content")
-    two_levels(content / "exhibits/box/box.glb")
-    with running_hall(content, work) as hall:
-        page = chromium.new_page(viewport={"width": 480, "height": 320})
-        enter(page, f"{hall.url}/?lang=en")
+    with plain_page(chromium, tmp_path_factory.mktemp("levels"), two_levels) as page:
         yield page
-        page.close()
 
 
 def test_the_level_follows_the_visitor(page):

@@ -13,9 +13,7 @@ from hall_app.content.schema.values import Bilingual, ContentPath, Metres, Point
 
 Hung = Annotated[float, Field(ge=0.1, le=20)]  # [m] a side of what hangs on a wall
 BESIDE = 0.05  # [m] an opening may lie beside the faces of the wall that it is in
-TO_CEILING = (
-    0.05  # [m] below the rooms' height: from there on a wall is drawn up to whatever ceiling is over it
-)
+TO_CEILING = 0.05  # [m] a wall lower than the rooms by less is drawn up to whatever ceiling is over it
 PAINTED = (".jpg", ".jpeg", ".png", ".webp")  # what the room's letters can lie beside on one sheet
 
 

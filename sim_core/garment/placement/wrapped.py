@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, KDTree
 
+from sim_core.cloth.sheet.sheet import face_edge_table
 from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement.ground import Ground
@@ -61,10 +62,9 @@ class Wrapped:
             tent = Tent.over(hulls, depths, np.radians(self.begin), room)
             return tent.hung(folds, cloth.vertices[:, 1] - low[1], self.gap) + [0.0, top, 0.0]
         hull = _section(ground, lowest, top)
-        width = float(high[0] - low[0])
-        need = line_girth(hull) + 2 * np.pi * room
+        width, girth = float(high[0] - low[0]), line_girth(hull)
+        need = girth + 2 * np.pi * room
         _check_width(pattern, width, need, self.mark)
-        girth = line_girth(hull)
         if closed or width < LAPS * need:
             line = _around(hull, np.radians(self.begin), (width - girth) / (2 * np.pi), 0.0, width)
         else:
@@ -112,7 +112,7 @@ def _between(
     """Points (n, 3) [m] of a mesh between two heights: vertices there that count (V,), and where edges cross either."""
     high += ABOVE
     y = vertices[:, 1]
-    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    edges, _ = face_edge_table(faces)
     edges = edges[counts[edges].all(1)]
     found = [vertices[counts & (y >= low) & (y <= high)]]
     for height in (low, high):
