@@ -179,15 +179,16 @@ class GlbFile:
         uint8 where steps of a 255th do not show.
 
         uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted,
-        unless `shading` (V, 3) gives them; with False, for what is unlit, and with colours it has none.
+        unless `shading` (V, 3) gives them; with False, for what is unlit, and with colours alone it has none.
         """
         from sim_core.picture import normals  # compiled: who only reads needs none of it
 
         attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
-        if colours is None and shading is not False:
-            shading = normals(vertices, faces) if shading is True else np.asarray(shading)
+        if shading is True and colours is None:
+            shading = normals(vertices, faces)
+        if not isinstance(shading, bool):
             attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
-        elif colours is not None:
+        if colours is not None:
             component, most = (U8, 255) if colours.dtype == np.uint8 else (U16, 65535)
             if component == U16:
                 colours = np.round(np.clip(colours, 0, 1) * most)

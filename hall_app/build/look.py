@@ -16,7 +16,8 @@ from hall_app.content.bakes.accessories import cloth_area, garment_at
 if TYPE_CHECKING:
     from sim_core.body import Mannequin
     from sim_core.garment import Garment, Layer, Outfit, Played
-    from sim_core.garment.glb import Clothed, MapsLike
+    from sim_core.garment.glb import Clothed
+    from sim_core.weave.maps import MapsLike
 
 __all__ = ["Wardrobe"]
 

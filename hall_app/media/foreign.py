@@ -49,31 +49,45 @@ _EDGES += (0.81, 0.84, 1.0)
 FINENESS = {
     "hall": Fineness(_EDGES, _even(2), 96, 28, 1, 5),
     "close": Fineness(_even(78), _even(4), 300, 48, 3, 11),
+    "afar": Fineness((0.12, 0.27, 0.30, 0.345, 0.565, 0.64, 0.70, 0.82, 1.0), (1.0,), 48, 10, 1, 3),
 }
+AFAR = 3.0  # [m] from which on the hall shows the coarsest: the mirror is 50 pixels high there
 
 
 def write_mirror(folder: Path) -> None:
     """Write mirror_hall.glb and mirror_close.glb into `folder`."""
-    for name, fineness in FINENESS.items():
-        (folder / f"mirror_{name}.glb").write_bytes(mirror_glb(fineness))
+    hall, close, afar = (FINENESS[name] for name in ("hall", "close", "afar"))
+    (folder / "mirror_hall.glb").write_bytes(mirror_glb(hall, afar))
+    (folder / "mirror_close.glb").write_bytes(mirror_glb(close))
 
 
-def mirror_glb(fineness: Fineness) -> bytes:
-    """The exhibit as GLB: metres, y up, foot at y = 0, its face to +z."""
+def mirror_glb(fineness: Fineness, afar: Fineness | None = None) -> bytes:
+    """The exhibit as GLB: metres, y up, foot at y = 0, its face to +z.
+
+    afar: how fine it is beyond AFAR; as `hall build` writes two levels, so that the hall shows the one it needs.
+    """
     import trimesh
 
     scene = trimesh.Scene()
-    for name, mesh in {"mirror": _mirror(fineness), **_stand(fineness)}.items():
-        scene.add_geometry(mesh, node_name=name, geom_name=name)
+    for name, mesh in _parts(fineness).items():
+        scene.add_geometry(mesh, name, name, metadata=None if afar is None else {"until": AFAR})
+    for part, mesh in ({} if afar is None else _parts(afar)).items():
+        name = f"{part} afar"
+        scene.add_geometry(mesh, name, name, metadata={"from": AFAR})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # trimesh's exporter may warn about numpy's deprecations
         data = scene.export(file_type="glb", include_normals=True)
     assert isinstance(data, bytes)  # trimesh gives other types for other file types
-    return with_short_indices(data)
+    return tightened(data)
 
 
-def with_short_indices(data: bytes) -> bytes:
-    """A GLB whose indices have 16 bits where its vertices are few enough: trimesh writes 32, a fifth of a file."""
+def _parts(fineness: Fineness) -> dict[str, Any]:
+    return {"mirror": _mirror(fineness), **_stand(fineness)}
+
+
+def tightened(data: bytes) -> bytes:
+    """A GLB whose indices have 16 bits where its vertices are few enough: trimesh writes 32, a fifth of a file; nodes
+    for far eyes get no size, so that readers who know nothing of levels show the near one alone."""
     (size,) = struct.unpack_from("<I", data, 12)
     document = json.loads(data[20 : 20 + size])
     binary, views = data[28 + size :], document["bufferViews"]
@@ -85,6 +99,9 @@ def with_short_indices(data: bytes) -> bytes:
             accessor["componentType"] = SHORT
             at = accessor["bufferView"]
             parts[at] = np.frombuffer(parts[at], "<u4").astype("<u2").tobytes()
+    for node in document["nodes"]:
+        if "from" in node.get("extras", {}):
+            node["scale"] = [0.0, 0.0, 0.0]
     begin = 0
     for number, (view, part) in enumerate(zip(views, parts, strict=True)):
         view |= {"byteOffset": begin, "byteLength": len(part)}
@@ -222,7 +239,7 @@ def _crescent(fineness: Fineness) -> Any:
     """A horned arm round the lower third of the rim, thick below and pointed above, in the mirror's plane."""
     import trimesh
 
-    steps, sides = fineness.sections // 2, max(10, fineness.sections // 6)
+    steps, sides = fineness.sections // 2, max(min(10, 2 * fineness.sides), fineness.sections // 6)
     turn = np.radians(np.linspace(-168, -12, steps + 1))
     taper = np.clip(np.sin(turn + np.pi), 0, 1) ** 0.6
     thick = 0.0035 + 0.0105 * taper

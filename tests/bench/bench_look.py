@@ -112,16 +112,26 @@ Rounds = dict[str, dict[str, list[float]]]  # hall -> view -> CPU ms a picture i
 def in_turn(
     pages: dict[str, Any], stands: dict[str, dict[str, list[float]]], rounds: int, seconds: float
 ) -> Rounds:
-    """What each hall's picture costs at each of its places, [x, z, yaw …] by view, drawn one after the other."""
+    """What each hall's picture costs at each of its places, [x, z, yaw …] by view, drawn one after the other; the other
+    halls stand still meanwhile, since what moves in them would count as well."""
     gpu = gpu_process()
     time.sleep(4)  # the pages' first look at the machine's speed
     found: Rounds = {name: {view: [] for view in places} for name, places in stands.items()}
+    life = {name: page.context.new_cdp_session(page) for name, page in pages.items()}
+
+    def live(name: str, state: str) -> None:
+        life[name].send("Page.setWebLifecycleState", {"state": state})
+
+    for name in pages:
+        live(name, "frozen")
     for number in range(rounds):
         for view in next(iter(stands.values())):
             for name, page in pages.items():
+                live(name, "active")
                 page.evaluate("(there) => hall.goTo(...there)", stands[name][view])
                 page.wait_for_timeout(600)
                 found[name][view].append(cost(page, gpu, seconds))
+                live(name, "frozen")
         print(f"round {number + 1} of {rounds}", flush=True)
     return found
 

@@ -16,9 +16,9 @@ async (cases) => {
 }
 """
 DRAWN = """
-() => {
+(node) => {
   const masks = [];
-  window.__viserMutable.nodeRefFromName["/exhibits/box"]?.traverse((mesh) => {
+  window.__viserMutable.nodeRefFromName[node ?? "/exhibits/box"]?.traverse((mesh) => {
     if (mesh.isMesh) masks.push(mesh.layers.mask === 1);
   });
   return masks.length ? masks.some(Boolean) : null;
@@ -132,6 +132,18 @@ def test_a_wall_that_is_taken_out_hides_nothing_any_more(page, old, new):
     plan.write_text(text.replace(old, new), "utf-8")
     soon(page, lambda: page.evaluate(DRAWN) is True)
     plan.write_text(text, "utf-8")
+
+
+def test_of_hall_and_studio_the_one_is_drawn_where_one_is(page):
+    """The studio stands half a kilometre to the east: who looks there pays nothing for it, nor in it for the hall."""
+    page.evaluate("() => hall.goTo(0.9, 3.0, -Math.PI / 2)")
+    soon(page, lambda: page.evaluate(DRAWN) and page.evaluate(DRAWN, "/studio") is False)
+    page.evaluate("() => document.querySelector('[data-testid=list]').click()")
+    page.locator("[data-testid=list-item-box]").click()
+    page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=60_000)
+    soon(page, lambda: page.evaluate(DRAWN, "/studio") and page.evaluate(DRAWN) is False)
+    page.keyboard.press("Escape")
+    soon(page, lambda: page.evaluate(DRAWN) and page.evaluate(DRAWN, "/studio") is False)
 
 
 @pytest.mark.parametrize(

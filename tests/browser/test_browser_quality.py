@@ -13,6 +13,12 @@ pytestmark = pytest.mark.browser
 
 JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "picture" / "judge.js"
 TURNED = "window.__viserMutable.nodePoseData['/exhibits/box'].wxyz.join()"
+SAMPLES = """
+() => {
+  const context = window.__viserMutable.scene.__r3f.root.getState().gl.getContext();
+  return context.getParameter(context.SAMPLES);
+}
+"""
 FEED = """
 async ([source, level, runs, cautious]) => {
   const url = URL.createObjectURL(new Blob([source], {type: "text/javascript"}));
@@ -115,9 +121,25 @@ def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
 
 
 @pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("chosen", "found", "samples"),
+    [("low", None, 0), ("auto", None, 0), ("auto", "high", 4), ("medium", None, 4), ("high", "low", 4)],
+)
+def test_a_software_renderer_pays_for_one_sample_a_pixel(plain_hall, chromium, chosen, found, samples):
+    """Unless a finer picture was chosen, or found to go, by the time the page came."""
+    page = chromium.new_page(viewport={"width": 240, "height": 160})
+    page.add_init_script(f"localStorage['hall.quality'] = {chosen!r}")
+    if found:
+        page.add_init_script(f"localStorage['hall.quality.found'] = {found!r}")
+    enter(page, f"{plain_hall.url}/?lang=en", quality=None)
+    assert page.evaluate(SAMPLES) == samples
+    page.close()
+
+
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
-    context = chromium.new_context(viewport={"width": 480, "height": 270})
+    context = chromium.new_context(viewport={"width": 1280, "height": 720})
     page = context.new_page()
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     assert page.evaluate("() => hall.quality()") == {"choice": "auto", "level": "low"}  # a software renderer

@@ -14,7 +14,7 @@ __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key", "dressing_key"]
 
 # Raise it whenever models, clips or their writers change what a bake looks like, and the other as well where an engine
 # or the film does: garments, film and pictures are then made anew, which costs most of a bake.
-BAKE_VERSION = 16
+BAKE_VERSION = 17
 DRESSING_VERSION = 12
 # The same of scans, which no engine of garments changes.
 SCAN_VERSION = 1

@@ -1,4 +1,4 @@
-// What walls hide is not drawn.
+// What walls hide is not drawn, nor what stands in another place: the hall while one is in the studio, and the other way.
 //
 // A renderer leaves out by itself what lies beside or behind the view, but draws whatever stands behind a wall, and pays
 // for its corners. The plan says where walls are, so that it is known from every place what they hide: a thing is
@@ -8,6 +8,7 @@
 import { inHall, requestRender } from "../viser/viser_adapter.js";
 
 const HAIR = 1e-6; // [rad] between two walls that meet
+const ELSEWHERE = 250; // [m]
 const SEEN = 0, UNSEEN = 31; // layers of three.js: cameras look at the first alone
 
 const turned = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
@@ -44,12 +45,17 @@ export function hides(walls, [x, y, z], [lowX, lowZ, highX, highZ, boxTop]) {
   return reached >= last;
 }
 
+/** Whether a box, as for `hides`, is so far from an eye that it belongs to another place. Pure. */
+export function elsewhere([x, , z], [lowX, lowZ, highX, highZ]) {
+  return Math.hypot(x - Math.min(Math.max(x, lowX), highX), z - Math.min(Math.max(z, lowZ), highZ)) > ELSEWHERE;
+}
+
 /** Draw of these meshes what is seen; boxOf(mesh): as for `hides`, null of what may be anywhere. Idempotent. */
 export function drawSeen(meshes, walls, eye, boxOf) {
   let changed = false;
   for (const mesh of meshes) {
-    const box = walls.length ? boxOf(mesh) : null;
-    const layer = box && hides(walls, eye, box) ? UNSEEN : SEEN;
+    const box = boxOf(mesh);
+    const layer = box && (elsewhere(eye, box) || hides(walls, eye, box)) ? UNSEEN : SEEN;
     if (mesh.userData.layer === layer) continue;
     mesh.userData.layer = layer;
     mesh.layers.set(layer);

@@ -8,6 +8,13 @@ import { requestRender, sceneTurn } from "../viser/viser_adapter.js";
 // As the exhibit has its axes: +z is its front, and whoever looks at it has +x on his right.
 const LAMP = [-0.45, 0.7, 0.9];
 const LIGHTS = "#include <lights_pars_begin>";
+const FACETS = "#include <lights_physical_pars_fragment>";
+// Without surroundings to reflect three.js looks up how much of them a surface would, and multiplies that by nothing.
+const REFLECTING = `${FACETS}
+#ifndef USE_ENVMAP
+  #undef RE_IndirectSpecular
+#endif
+`;
 const AIMED = `${LIGHTS}
 uniform vec3 hallLamp;
 uniform float hallLampPower;
@@ -48,7 +55,7 @@ export function aimLamp(meshes, { facing, lamp: power }) {
       before.call(material, shader, renderer);
       shader.uniforms.hallLamp = { value: lamp };
       shader.uniforms.hallLampPower = { value: power };
-      shader.fragmentShader = shader.fragmentShader.replace(LIGHTS, AIMED);
+      shader.fragmentShader = shader.fragmentShader.replace(LIGHTS, AIMED).replace(FACETS, REFLECTING);
     };
     material.customProgramCacheKey = () => `${key} lamp`;
     material.needsUpdate = true;

@@ -1,6 +1,6 @@
 // Picture quality: resolution, sharpness of slanted textures, reflections. The visitor's choice, or the judge's.
 
-import { drawAt, framesDrawn, meshesOf, nodeNames, renderer, seenFrom } from "../viser/viser_adapter.js";
+import { drawAt, framesDrawn, meshesOf, nodeNames, seenFrom } from "../viser/viser_adapter.js";
 import { layerBeneath } from "./behind.js";
 import { boxAbout, drawSeen, ownBox } from "./hidden.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
@@ -15,9 +15,6 @@ const { recall, remember } = window.HALL.memory;
 const CLOSE = ["/closeup", "/comparison"]; // nodes of what is seen from close by
 const CHOSEN = "hall.quality", FOUND = "hall.quality.found";
 
-// A software renderer pays for every pixel; no use in finding that out by trial.
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-
 const SETTINGS = {
   low: { anisotropy: 1, blend: false, reflections: false },
   medium: { anisotropy: 4, blend: true, reflections: false },
@@ -31,18 +28,12 @@ export function resolution(level, ratio) {
   return { low: Math.min(medium, Math.max(0.66, 0.5 * high)), medium, high }[level];
 }
 
-function softwareDraws() {
-  const context = renderer()?.getContext();
-  const names = context?.getExtension("WEBGL_debug_renderer_info");
-  return Boolean(names) && SOFTWARE.test(String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)));
-}
-
 /** createQuality(shown, onChange) -> {choice, level, choose, frame}; shown() is the scene as it is described now;
  *  onChange() when choice or level is another. */
 export function createQuality(shown, onChange = () => {}) {
   let choice = CHOICES.includes(recall(CHOSEN)) ? recall(CHOSEN) : "auto";
   const found = LEVELS.includes(recall(FOUND)) ? recall(FOUND) : null;
-  const first = found ?? (softwareDraws() ? "low" : "medium");
+  const first = found ?? (window.HALL.softwareDraws() ? "low" : "medium"); // no use in finding that out by trial
   let judgement = newJudgement(first, { now: performance.now(), cautious: Boolean(found) });
   let last = null, drawn = framesDrawn(), running = false;
   const level = () => (choice === "auto" ? judgement.level : choice);
@@ -82,7 +73,10 @@ export function createQuality(shown, onChange = () => {}) {
       reflect(reflections);
       sharpen(room, anisotropy, blend);
       const eye = seenFrom();
-      if (eye) drawSeen(room, opaque, eye, ownBox);
+      if (eye) {
+        drawSeen(room, opaque, eye, ownBox);
+        drawSeen(meshesOf("/studio"), [], eye, boxAbout);
+      }
       for (const name of nodeNames()) {
         if (!name.startsWith("/exhibits/") && !CLOSE.includes(name)) continue;
         const meshes = meshesOf(name);

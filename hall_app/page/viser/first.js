@@ -18,4 +18,25 @@
     String(what).startsWith("data:application/wasm") ? new Promise(() => {}) : ask(what, ...rest);
   // Where viser's script finds its decoder; door.js fetches it.
   window.HALL.giveDecoder = (module) => { globalThis.__viserZstdWasm = module; };
+  // viser asks for four samples a pixel. A software renderer pays for each of them, nearly half of a picture: whoever has
+  // not chosen a finer picture gets smoother walking instead of smoother edges. Samples are a context's for good.
+  const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+  const take = HTMLCanvasElement.prototype.getContext;
+  let slow;
+  function softwareDraws() {
+    if (slow === undefined) {
+      const probe = take.call(document.createElement("canvas"), "webgl2");
+      const names = probe?.getExtension("WEBGL_debug_renderer_info");
+      slow = Boolean(names) && software.test(String(probe.getParameter(names.UNMASKED_RENDERER_WEBGL)));
+      probe?.getExtension("WEBGL_lose_context")?.loseContext();
+    }
+    return slow;
+  }
+  window.HALL.softwareDraws = softwareDraws;
+  HTMLCanvasElement.prototype.getContext = function getContext(kind, wishes, ...rest) {
+    const { recall } = window.HALL.memory, chosen = recall("hall.quality") ?? "auto";
+    const level = chosen === "auto" ? recall("hall.quality.found") ?? "low" : chosen;
+    const plain = wishes?.antialias && level === "low" && softwareDraws();
+    return take.call(this, kind, plain ? { ...wishes, antialias: false } : wishes, ...rest);
+  };
 }

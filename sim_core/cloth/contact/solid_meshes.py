@@ -20,7 +20,7 @@ def solid_mesh(solid: Solid, segments: int = 28) -> Mesh:
     if isinstance(solid, Cylinder):
         return _cylinder(solid, segments)
     if isinstance(solid, Box):
-        return _box(solid, max(2, segments // 8))
+        return _box(solid, max(1, segments // 8))
     raise SimCoreError(f"{type(solid).__name__}: has no display mesh – use capsules, cylinders and boxes")
 
 
