@@ -12,7 +12,7 @@ import { remember } from "./ui/words.js";
 import { createUi } from "./ui/ui.js";
 import { createVisit } from "./visit/visit.js";
 
-const HOOK_PATIENCE = 8000; // [ms] before the page hands the camera to the server
+const HOOK_PATIENCE = 60000; // [ms] before the page hands the camera to the server; a slow machine takes its time
 const DRAW_ON = 5000; // [ms] at a time, while the hall's nodes come
 const FIRST_LOOK = 2500; // [ms] the finished hall is drawn on end, to see what the machine bears
 

@@ -40,9 +40,11 @@ from running_hall import running_hall  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 LOOKS = ("shipped", "ambient", "beside", "default")
+SURROUNDED = ("beside", "default")
 MOST = {"ambient": 1 / 2, "beside": 1 / 2, "default": 1 / 3}  # what the shipped look may cost of each
 MOST_BEFORE = {"entry": 1.3, "exhibit": 1.0}  # and of commit 47c1f8d, with all exhibits in
 VIEW = {"width": 960, "height": 540}
+SCRIPT = "hall.packed.js"  # all of the page's modules
 DRAW = """
 (ms) => new Promise((done) => {
   const before = hall.framesDrawn(), end = performance.now() + ms;
@@ -56,6 +58,7 @@ DRAW = """
 """
 
 
+ENVIRONMENT = "() => Boolean(window.__viserMutable.scene.environment)"
 SIZE = """
 () => {
   const gl = window.__viserMutable.scene.__r3f.root.getState().gl;
@@ -102,7 +105,7 @@ def keep_environment(route) -> None:
     reply = route.fetch()
     text = reply.text()
     if "reflections: false" not in text:
-        raise RuntimeError("quality.js no longer says `reflections: false` – this bench must follow it")
+        raise RuntimeError(f"{SCRIPT} no longer says `reflections: false` – this bench must follow it")
     route.fulfill(response=reply, body=text.replace("reflections: false", "reflections: true"))
 
 
@@ -166,7 +169,7 @@ def bare_page(browser, url: str, prepare: Callable[[Any], None] = lambda page: N
 
 
 def lit_by_itself(page) -> None:
-    page.route("**/quality.js*", keep_environment)
+    page.route(f"**/{SCRIPT}*", keep_environment)
 
 
 def measured(rounds: int, seconds: float, content: Path) -> Rounds:
@@ -180,8 +183,11 @@ def measured(rounds: int, seconds: float, content: Path) -> Rounds:
             hall = stack.enter_context(
                 running_hall(content, work / look, program=program, env={"HALL_LOOK": look})
             )
-            prepared = (lit_by_itself,) if look in ("beside", "default") else ()
+            prepared = (lit_by_itself,) if look in SURROUNDED else ()
             pages[look] = bare_page(browser, hall.url, *prepared)
+            pages[look].wait_for_timeout(4000)
+            if pages[look].evaluate(ENVIRONMENT) != (look in SURROUNDED):
+                raise RuntimeError(f"{look}: its environment is not what it is named after – mend this bench")
         where = views(pages["shipped"])
         return in_turn(pages, dict.fromkeys(LOOKS, where), rounds, seconds)
 

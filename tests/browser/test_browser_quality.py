@@ -19,6 +19,14 @@ SAMPLES = """
   return context.getParameter(context.SAMPLES);
 }
 """
+LATE = """
+let inside;
+const before = performance.now() + 12000;
+Object.defineProperty(window, "__viserMutable", {
+  set: (value) => { inside = value; },
+  get: () => (performance.now() < before ? undefined : inside),
+});
+"""
 FEED = """
 async ([source, level, runs, cautious]) => {
   const url = URL.createObjectURL(new Blob([source], {type: "text/javascript"}));
@@ -133,6 +141,16 @@ def test_a_software_renderer_pays_for_one_sample_a_pixel(plain_hall, chromium, c
         page.add_init_script(f"localStorage['hall.quality.found'] = {found!r}")
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     assert page.evaluate(SAMPLES) == samples
+    page.close()
+
+
+@pytest.mark.nightly
+def test_a_slow_machine_keeps_light_and_quality(plain_hall, chromium):
+    """However late viser's inside is there: who waits in vain hands the camera to the server, and stays unlit."""
+    page = chromium.new_page(viewport={"width": 240, "height": 160})
+    page.add_init_script(LATE)
+    enter(page, f"{plain_hall.url}/?lang=en")
+    assert page.evaluate("() => hall.quality()") == {"choice": "low", "level": "low"}
     page.close()
 
 
