@@ -56,9 +56,8 @@ AFAR = 3.0  # [m] from which on the hall shows the coarsest: the mirror is 50 pi
 
 def write_mirror(folder: Path) -> None:
     """Write mirror_hall.glb and mirror_close.glb into `folder`."""
-    hall, close, afar = (FINENESS[name] for name in ("hall", "close", "afar"))
-    (folder / "mirror_hall.glb").write_bytes(mirror_glb(hall, afar))
-    (folder / "mirror_close.glb").write_bytes(mirror_glb(close))
+    (folder / "mirror_hall.glb").write_bytes(mirror_glb(FINENESS["hall"], FINENESS["afar"]))
+    (folder / "mirror_close.glb").write_bytes(mirror_glb(FINENESS["close"]))
 
 
 def mirror_glb(fineness: Fineness, afar: Fineness | None = None) -> bytes:

@@ -56,8 +56,6 @@ DRAW = """
   more();
 })
 """
-
-
 ENVIRONMENT = "() => Boolean(window.__viserMutable.scene.environment)"
 SIZE = """
 () => {

@@ -34,9 +34,10 @@
   }
   window.HALL.softwareDraws = softwareDraws;
   HTMLCanvasElement.prototype.getContext = function getContext(kind, wishes, ...rest) {
-    const { recall } = window.HALL.memory, chosen = recall("hall.quality") ?? "auto";
+    if (!wishes?.antialias) return take.call(this, kind, wishes, ...rest);
+    const { recall } = window.HALL.memory, chosen = recall("hall.quality") ?? "auto"; // as picture/quality.js keeps it
     const level = chosen === "auto" ? recall("hall.quality.found") ?? "low" : chosen;
-    const plain = wishes?.antialias && level === "low" && softwareDraws();
-    return take.call(this, kind, plain ? { ...wishes, antialias: false } : wishes, ...rest);
+    const antialias = level !== "low" || !softwareDraws();
+    return take.call(this, kind, { ...wishes, antialias }, ...rest);
   };
 }

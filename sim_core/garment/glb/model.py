@@ -176,32 +176,29 @@ def _write_figure(glb: GlbFile, figure: Shown, lift: np.ndarray, *, apart: bool)
     for number, worn in enumerate(figure.worn, 1):
         part[worn.faces] = number
     dyes = [LINEN, *(worn.dye for worn in figure.worn)]
-    if not apart:
-        corners = np.column_stack([figure.faces.ravel(), np.repeat(part, 3)])
+
+    def node(name: str, own: np.ndarray, material: dict[str, Any], colours: np.ndarray | None = None) -> None:
+        """These faces; colours: linear, one a part."""
+        corners = np.column_stack([figure.faces[own].ravel(), np.repeat(part[own], 3)])
         used, index = np.unique(corners, axis=0, return_inverse=True)
         glb.mesh(
-            "figure",
+            name,
             figure.vertices[used[:, 0]] + lift,
             index.reshape(-1, 3).astype(np.int32),
-            glb.material(plain("linen", WHITE, FIGURE_ROUGH)),
-            colours=linear(np.array(dyes))[used[:, 1]],
+            glb.material(material),
+            colours=None if colours is None else colours[used[:, 1]],
             shading=figure.normals[used[:, 0]],
         )
+
+    if not apart:
+        white = plain("linen", WHITE, FIGURE_ROUGH)
+        node("figure", np.ones(len(part), bool), white, linear(np.array(dyes)))
         return
-    names = ["figure", *(worn.name for worn in figure.worn)]
-    for number, (name, dye) in enumerate(zip(names, dyes, strict=True)):
-        own = part == number
-        if own.any():
-            used, index = np.unique(figure.faces[own], return_inverse=True)
-            faces = index.reshape(-1, 3).astype(np.int32)
-            material = plain("linen", dye, FIGURE_ROUGH) if number == 0 else plain(name, dye, WORN_ROUGH)
-            glb.mesh(
-                name,
-                figure.vertices[used] + lift,
-                faces,
-                glb.material(material),
-                shading=figure.normals[used],
-            )
+    looks = [("figure", plain("linen", LINEN, FIGURE_ROUGH))]
+    looks += [(worn.name, plain(worn.name, worn.dye, WORN_ROUGH)) for worn in figure.worn]
+    for number, (name, material) in enumerate(looks):
+        if (own := part == number).any():
+            node(name, own, material)
 
 
 def _write_panels(
